@@ -1,20 +1,30 @@
 """The proposed experiment does what it promises: run it, and the rivals part."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from winch_friction.discrepancy import next_experiment
+from winch_friction.discrepancy.adequacy import Check
 from winch_friction.discrepancy.engine.blocks import Blocks, Slot, grams
 from winch_friction.discrepancy.engine.crossfit import CrossFit
 from winch_friction.discrepancy.engine.problem import Base, Layout, Problem
-from winch_friction.discrepancy.next_experiment import plan_experiment
+from winch_friction.discrepancy.next_experiment import (
+    NextExperiment,
+    insufficient,
+    of_own_terms,
+    of_wire,
+    plan_experiment,
+)
+from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.discrepancy.workflow import find_gap
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.signals import Run
 from winch_friction.records.crane_file import load_crane
 from winch_friction.records.model_file import load_model
+from winch_friction.records.strict_yaml import shipped
 from winch_friction.simulation import load_scenario, simulate
 
 HIDDEN = [("pressure_offset", 1.0)]
@@ -156,3 +166,64 @@ def test_most_rivals_first_and_of_those_the_nearest_farthest_away(monkeypatch, s
 
 def test_where_none_can_be_run_nothing_is_planned(monkeypatch):
     assert planned(monkeypatch, slots_of(("one", ""), ("two", "")), {}) is None
+
+
+# -- what is said and written of it
+def test_a_plans_entry_has_its_file_the_two_in_their_order_and_what_was_considered():
+    told = NextExperiment(ZERO, "text", ("found", "rival"), LIMITS.enough_separation, {ZERO: 3.04, HOLD: 0.12})
+    assert told.content() == {
+        "scenario": f"{ZERO}.yaml", "separates": ["found", "rival"], "expected_z": LIMITS.enough_separation, "note": "",
+        "considered": {ZERO: 3.04, HOLD: 0.12},
+    }  # fmt: skip
+    tied_ = replace(told, expected_z=LIMITS.enough_separation - 0.01).content()
+    assert tied_["note"] == "tied in every scenario of the family: another channel must decide"
+
+
+def test_what_was_considered_is_said_to_two_digits_behind_the_point(monkeypatch):
+    plan = planned(monkeypatch, slots_of(("one", ""), ("two", "")), {ZERO: np.sqrt(50.0) * np.eye(2)})
+    assert plan.alternatives == {ZERO: round(plan.expected_z, 2)}
+    assert plan.alternatives[ZERO] != round(plan.expected_z)
+    assert plan.file == f"{ZERO}.yaml"
+    assert plan.text == shipped("scenarios", ZERO).read_text(encoding="utf-8")
+
+
+def test_some_runs_that_do_not_say_their_wire_are_named():
+    runs = [SimpleNamespace(name=name, channels={"wire_out": 0} if name == "b" else {}) for name in "abc"]
+    (note,) = of_wire(SimpleNamespace(crane=SimpleNamespace(wire_stiffness=1e8), prepared=runs))
+    assert note.startswith("a, c do not say wire_out, so that")
+
+
+@pytest.mark.parametrize(
+    ("after", "said"),
+    [
+        ((-4.0, 2.0), "too much of it: a -5 becomes -4, b 2 becomes 2"),
+        ((-6.0, 2.0), "something else of it: a -5 becomes -6"),
+    ],
+)
+def test_a_term_that_the_model_has_says_too_much_where_its_sizes_fall_whatever_their_sign(after, said):
+    """A shape of it is no size."""
+    parameters = [SimpleNamespace(name=name, shape=name == "shape") for name in ("a", "b", "shape")]
+    terms = [SimpleNamespace(name="own", parameters=parameters), SimpleNamespace(name="other", parameters=parameters)]
+    given = SimpleNamespace(terms=terms, as_dict=lambda: {"a": -5.0, "b": 2.0, "shape": 1.0})
+    written = SimpleNamespace(as_dict=lambda: {"a": after[0], "b": after[1], "shape": 9.0})
+    (note,) = of_own_terms({"own"}, given, written)
+    assert note.startswith(f"own: the given model has this term already and says {said}")
+    assert "shape" not in note
+    lost = SimpleNamespace(as_dict=lambda: {"a": 1.0, "shape": 1.0})
+    assert of_own_terms({"own"}, given, lost) == []
+
+
+def test_runs_that_were_looked_at_show_both_sides_as_given(monkeypatch, crane_150t, crane2_model):
+    asked = []
+    sides = {("t",): next_experiment.nothing_compared(), ("h",): next_experiment.nothing_compared()}
+    monkeypatch.setattr(
+        next_experiment, "compare", lambda before, after, names, _: asked.append((before, after)) or sides[names]
+    )
+    split = SimpleNamespace(train=("t",), holdout=("h",))
+    checks = [Check("hoisting", 1.0, 3.0, "s", False)]
+    found = insufficient(checks, (), crane_150t, crane2_model, ("given", split))
+    assert (found.train is sides["t",], found.holdout is sides["h",]) == (True, True)
+    assert asked == [("given", "given")] * 2
+    electric = SimpleNamespace(drive=SimpleNamespace(hydraulic=False, unit="N*m"), name="electric")
+    other = insufficient(checks, (), electric, crane2_model)
+    assert (other.next_experiment, other.next_scenario, other.unit) == (None, "", "N*m")

@@ -454,3 +454,32 @@ def test_a_layer_tells_where_runs_of_one_level_share_it_and_no_other_has_it(laye
     for run, layer in zip(runs, layers, strict=True):
         run.channels["wire_layer"] = np.array([float(layer)])
     assert told_by_a_signal(runs, np.array([True, True, False, False])) == told
+
+
+def test_a_state_is_since_a_date_where_its_last_window_has_no_end():
+    laws = [State(((0.0, 5.0), (9.0, end)), 2, 4, False).law for end in (INF, 12.0)]
+    assert laws == [SINCE, SOME_RUNS]
+
+
+def test_a_candidate_of_some_runs_has_its_causes_column_and_correction_then(monkeypatch):
+    monkeypatch.setattr("winch_friction.discrepancy.run_states.told_by_a_signal", lambda *_: False)
+    there = np.array([False, True, False])
+    runs = dated((0.0, 10.0), (100.0, 10.0), (200.0, 10.0))
+    shape = Shape("all groups", {})
+    own = Candidate(
+        "zero", linear=(Parameter("x", "Pa", 1.0, doc="a zero"),), columns=lambda run, values: np.full((2, 1), 7.0),
+        corrects=lambda found, *_: [Correction("pressure_offset", found["x"])], shapes=lambda _: [shape],
+    )  # fmt: skip
+    (found,) = in_some_runs(Slot("zero", "", (1,), origin=(own, shape)), runs, 8.0 * there, there)
+    assert [found.columns(run, {}).tolist() for run in runs] == [[[0.0]] * 2, [[7.0]] * 2, [[0.0]] * 2]
+    (made,) = found.corrects({"x": 3e5}, shape, None)
+    assert (made.value, tuple(made.during)) == (3e5, ((99.0, 111.0),))
+
+
+def test_a_drag_for_a_time_is_a_few_newton_metres_beside_a_friction_that_is_there():
+    own = _drag("wear_drift", ((1.0, 2.0), (3.0, 4.0)), SOME_RUNS, (1.0, 0.25))
+    assert own.presumes == ("coulomb", "motor_coulomb")
+    assert [(each.typical, each.lower) for each in own.linear] == [(3.0, 0.0)]
+    assert own.linear == own.term.parameters
+    assert own.term.table.knots == (("time", (1.0, 2.0, 3.0, 4.0)),)
+    assert own.term.table.weights == (1.0, 0.25)

@@ -9,7 +9,25 @@ import pytest
 
 from winch_friction.estimation.answers import ParameterStatus, ParameterStatuses, learned_model, parameter_estimates
 from winch_friction.estimation.config import EstimatorConfig
-from winch_friction.estimation.dynamics import LOAD, wire_step
+from winch_friction.estimation.dynamics import (
+    DISTURBANCE,
+    DISTURBANCE_NOISE,
+    DOUBTED_LOAD,
+    ENCODER,
+    ENCODER_CHANGE,
+    LOAD,
+    LOAD_NOISE,
+    LOAD_SPEED,
+    SPEED,
+    STICK_IGNORANCE,
+    STRETCH,
+    TORQUE_NOISE,
+    Step,
+    fading,
+    fresh_motion,
+    noise_variances,
+    wire_step,
+)
 from winch_friction.estimation.estimator import FrictionEstimator
 from winch_friction.estimation.filter import StateFilter
 from winch_friction.estimation.interval import FrictionFunctions, Intervals, mean_direction
@@ -20,6 +38,8 @@ from winch_friction.estimation.trust import Excitation, VarianceFactor
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.friction import term_named
 from winch_friction.physics.friction.compiled import ORDER
+from winch_friction.physics.friction.correction import Correction
+from winch_friction.physics.friction.symbols import GROUP_SIGNALS
 from winch_friction.physics.signals import GroupSample, Sample
 from winch_friction.physics.winch.operating_point import ChannelRanges, sample_operating_point
 from winch_friction.records.crane_file import load_crane
@@ -519,3 +539,97 @@ def test_the_size_of_a_friction_is_what_a_full_direction_adds(way):
     size = FrictionFunctions(one_way).magnitude(point, one_way.values, 1)
     assert size == pytest.approx(FrictionFunctions(both).magnitude(point, both.values, 1))
     assert size == pytest.approx(FrictionFunctions(both).torque((1.0, *point[1:]), both.values, 1))
+
+
+# -- sensor errors and motion, by figures
+def considering(**std):
+    """Errors of these deviations alone."""
+    names = ("speed_delay", "displacement_scale", "pressure_scale", "pressure_offset", "wire_damping")
+    return SensorErrors(CRANE, SEED, EstimatorConfig(**{f"{name}_std": std.get(name, 0.0) for name in names}))
+
+
+WEIGHTS = {"count": 0.0, "pressure": 3e-7, "pressure_sum": 5e-7, "displacement": 2e6, "higher_port": 9.0}
+
+
+def reading(weights=WEIGHTS):
+    """A friction that reads these signals of the first and, twice as much, of every other group; and its point."""
+    both = two_groups()
+    both.groups = {name: both.groups[name] for name in ("passive", "active")}  # the driving one is not the first
+    point = sample_operating_point(both, CRANE, drum_torque=0.0, speed=50.0)
+    shares = [0.0] * len(ORDER) + [k * weights[each.name] for k in (1.0, 2.0) for each in GROUP_SIGNALS]
+    assert len(shares) == len(point)
+    return both, point, lambda at: sum(share * value for share, value in zip(shares, at, strict=True))
+
+
+def test_a_gain_of_the_pressures_is_one_of_their_sums_as_well_and_one_of_the_strokes_of_all_groups():
+    both, point, at = reading()
+    friction, strokes = at(point), (0.4 * CRANE.max_displacement, CRANE.max_displacement)
+    by_pressure = sum(k * (3e-7 * (a - b) + 5e-7 * (a + b)) for k, a, b in ((1, 300e5, 25e5), (2, 150e5, 25e5)))
+    by_stroke = sum(k * 2e6 * stroke for k, stroke in zip((1, 2), strokes, strict=True))
+    (found,) = considering(pressure_scale=0.02).by(both, 700.0, 40.0, point, friction, at)
+    assert found == pytest.approx(-700.0 + by_pressure)
+    (found,) = considering(displacement_scale=0.02).by(both, 700.0, 40.0, point, friction, at)
+    assert found == pytest.approx(-700.0 + by_stroke)
+
+
+@pytest.mark.parametrize(("port_a", "port_b", "slope"), [(150e5, 25e5, 1.0), (25e5, 150e5, -1.0)])
+def test_an_offset_is_a_constant_torque_of_the_driving_group_and_less_of_its_pressure(port_a, port_b, slope):
+    """Where port B is the higher one the drop grows by what port A shows too much."""
+    both, point, at = reading({**WEIGHTS, "pressure_sum": 0.0, "higher_port": 0.0})
+    both.groups["active"].pressure_a, both.groups["active"].pressure_b = port_a, port_b
+    point = sample_operating_point(both, CRANE, drum_torque=0.0, speed=50.0)
+    (found,) = considering(pressure_offset=1e5).by(both, 700.0, 40.0, point, at(point), at)
+    assert found == pytest.approx(-CRANE.motor_count("active") * CRANE.max_displacement + slope * 2.0 * 3e-7)
+
+
+def test_a_speed_that_is_late_and_a_wires_damping_are_the_first_and_the_last_of_what_is_considered():
+    both, point, at = reading()
+    errors = considering(speed_delay=0.3, wire_damping=0.5, pressure_offset=1e5)
+    assert errors.std == (0.3, 1e5, 0.5)
+    found = errors.by(both, 700.0, 40.0, point, at(point), at)
+    assert (len(found), found[0], found[-1]) == (3, -40.0, 0.0)
+    assert considering().std == considering().by(both, 700.0, 40.0, point, 0.0, at) == ()
+
+
+def test_a_seeds_correction_says_how_unsure_a_sensor_is_and_only_where_it_says_so():
+    groups = ("main", "active", "passive")
+    stated = [
+        Correction("pressure_scale", 0.0, s, groups=(g,)) for g, s in zip(groups, (0.004, 0.03, None), strict=True)
+    ]
+    config = EstimatorConfig(pressure_scale_std=0.01, displacement_scale_std=0.0)
+    for corrections, std in ((stated, 0.03), (stated[:1], 0.004), (stated[2:], 0.01), ([], 0.01)):
+        errors = SensorErrors(CRANE, replace(SEED, corrections=tuple(corrections)), config)
+        assert errors.std[1] == std
+
+
+def test_the_motions_constants_are_those_of_the_docstring():
+    """Friction in stick is anywhere within 30 of its levels; a wire's past is unknown by 1 mm and 2 cm/s."""
+    assert (STICK_IGNORANCE, DOUBTED_LOAD) == (30.0, 20.0)
+    bare = sample(wire_layer=2.0)
+    known = {state: (value, variance) for state, value, variance in fresh_motion(bare, CRANE, CONFIG, 0.25)}
+    r, rounding = 0.867 / 250.0, CONFIG.speed_step**2 / 12.0
+    assert known[SPEED] == (50.0, pytest.approx(0.25 + 2.0 * rounding))
+    assert known[STRETCH] == (0.0, pytest.approx(1e-6))
+    assert known[LOAD_SPEED] == (pytest.approx(50.0 * r), pytest.approx(r * r * known[SPEED][1] + 4e-4))
+    assert known[DISTURBANCE] == (0.0, pytest.approx(CONFIG.disturbance_std**2))
+    assert known[ENCODER] == (0.0, pytest.approx(rounding))
+    assert known[ENCODER_CHANGE] == (0.0, 0.0)
+    assert LOAD not in known
+    light = wire_step(CRANE, 1.0, 6.0, 1.0, 0.0, 1e-5)  # 3e8 N/m on a kilogram, were it not for 40 rad/s
+    assert light[2][1] / 1e-5 == pytest.approx(1600.0, rel=1e-3)
+    heavy = wire_step(CRANE, 60e3, 6.0, 200.0, 0.0, 1e-5)
+    assert heavy[2][1] / 1e-5 == pytest.approx(3e8 / 200.0 / 60e3, rel=1e-3)
+
+
+def test_a_disturbance_fades_by_its_own_time():
+    config = EstimatorConfig(disturbance_time=0.5, disturbance_std=7.0)
+    assert fading(0.5, config) == pytest.approx(math.exp(-1.0))
+    assert fading(0.0, config) == 1.0
+    step = Step(0.0, 4.0, 7.0, 0.0, (), (), (), 0.0, 0.5, False)
+    known = noise_variances(step, config, 3.0, False)
+    walk = 3.0 * config.load_noise**2 * 0.5
+    assert known[LOAD_NOISE] == pytest.approx(walk)
+    assert noise_variances(step._replace(doubted=True), config, 3.0, False)[LOAD_NOISE] == pytest.approx(400.0 * walk)
+    assert noise_variances(step, config, 3.0, True)[LOAD_NOISE] == 0.0
+    assert known[DISTURBANCE_NOISE] == pytest.approx(3.0 * 49.0 * (1.0 - math.exp(-2.0)))
+    assert known[TORQUE_NOISE] == 3.0 * 4.0 + 7.0

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from winch_friction.discrepancy import again, workflow
-from winch_friction.discrepancy.answer import MISSING, NOTHING, UNEXPLAINED, GapOptions
+from winch_friction.discrepancy.answer import AMBIGUOUS, MISSING, NOTHING, UNEXPLAINED, GapOptions
 from winch_friction.discrepancy.run_states import EACH_RUN
 from winch_friction.discrepancy.search import Study
 from winch_friction.physics.signals import Run
@@ -202,3 +202,40 @@ def test_surfaces_are_drawn_where_nothing_is_named_or_one_law_is_not_exact(kind,
         cross=SimpleNamespace(excess=lambda _: left),
     )  # fmt: skip
     assert workflow._surfaces_may_say_more(search) is may
+
+
+# -- laws that only the data know
+@pytest.mark.parametrize(
+    ("first", "left", "other", "adds", "taken"),
+    [
+        (MISSING, 4.9, trial(MISSING), True, True),
+        (MISSING, 5.1, trial(MISSING), True, False),  # more than half of what the names leave
+        (UNEXPLAINED, 9.9, trial(MISSING), False, True),  # where nothing is named anything that stands is more
+        (UNEXPLAINED, 0.1, trial(UNEXPLAINED), True, False),
+        (MISSING, 0.1, trial(MISSING), False, False),  # the locked runs are surely left with no less
+        (MISSING, 0.1, trial(UNEXPLAINED), True, False),
+        (AMBIGUOUS, 5.1, trial(AMBIGUOUS), True, False),
+        (AMBIGUOUS, 4.9, trial(AMBIGUOUS), True, True),
+    ],
+)
+def test_a_law_of_the_data_stands_where_it_leaves_half_of_what_names_do(monkeypatch, first, left, other, adds, taken):
+    asked = []
+    before = trial(first)
+    before.search.cross, before.search.explanation = SimpleNamespace(excess=lambda _: 10.0), None
+    selection = SimpleNamespace(found=["law"], final=None)
+    found = SimpleNamespace(selection=selection, cross=SimpleNamespace(excess=lambda _: left))
+
+    def searched(study, given, also):
+        asked.append(also)
+        return found
+
+    monkeypatch.setattr(again, "search_runs", searched)
+    monkeypatch.setattr(again, "standing", lambda study, search: asked.append(search) or other)
+    monkeypatch.setattr(
+        again, "adds", lambda fewer, more, rng: adds and (fewer, more) == (before.holdout, other.holdout)
+    )
+    assert (again.by_surfaces(STUDY, before) is other) is taken
+    assert (asked[0].func, asked[0].keywords) == (again.free_members, {"rows": again.SURFACES})
+    assert asked[1:] in ([], [found])
+    selection.found.clear()
+    assert again.by_surfaces(STUDY, before) is before  # the data know none

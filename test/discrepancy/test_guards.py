@@ -41,7 +41,7 @@ from winch_friction.discrepancy.engine.selection import (
     with_fewer,
 )
 from winch_friction.discrepancy.next_experiment import nothing_compared, supplying
-from winch_friction.discrepancy.outdone import _asked, _closed, outdone
+from winch_friction.discrepancy.outdone import _asked, _closed, _could_be, outdone
 from winch_friction.discrepancy.proof import (
     Trial,
     _noise,
@@ -467,7 +467,8 @@ def test_several_names_leave_no_more_than_noise(names, left, excess, stands):
     cross = SimpleNamespace(excess=lambda _: excess, explain=lambda own: SimpleNamespace(loss=LOSSES[len(own)]))
     search = SimpleNamespace(explanation=SimpleNamespace(slots=slots, loss=LOSSES[2]), cross=cross)
     trial = SimpleNamespace(holdout=after, search=search)
-    assert (several_leave_more_than_noise(trial) == "") is stands
+    why = several_leave_more_than_noise(trial)
+    assert why == ("" if stands else f"one, two together leave {left * 0.8:.3g} where the noise is 0.8")
     brought = (Slot("slope", "", (0,), brings=("level",)), Slot("level", "", (1,)))  # one effect of two orders
     trial.search.explanation.slots = brought
     assert several_leave_more_than_noise(trial) == ""
@@ -554,6 +555,7 @@ def test_a_small_second_name_stays_by_another_signal(second, names):
     ("viscosity_temperature", "brake_drag", 1.6, 1.1, False, True),
     ("signal_delay", "layer_radius", 2.0, 0.8, False, True),  # shows while the speed changes, as no radius does
     ("inertia_error", "signal_delay", 2.0, 0.8, True, False),
+    ("inertia_error", "layer_radius", 2.0, 0.8, False, True),
 ])  # fmt: skip
 def test_a_name_that_reads_another_signal_is_no_inexactness_of_the_others(
     own, other, fewer, more, refuses, stays, monkeypatch
@@ -566,6 +568,34 @@ def test_a_name_that_reads_another_signal_is_no_inexactness_of_the_others(
     trials = [SimpleNamespace(search=rest, holdout=side) for side in sides]
     monkeypatch.setattr(several_module, "refused", lambda search, rng: refuses)
     assert _by_another_signal(slots[0], *trials, np.random.default_rng(0)) is stays
+
+
+@pytest.mark.parametrize("signal", ["direction", "count", "gear_ratio", "max_displacement", "density", "pressure"])
+def test_what_every_law_may_read_is_no_other_signal(signal):
+    own, other = (
+        Slot(name, "", (0,), origin=(SimpleNamespace(signals=reads), None))
+        for name, reads in (("own", ("speed", signal)), ("other", ("speed",)))
+    )
+    rest = SimpleNamespace(selection=SimpleNamespace(final=SimpleNamespace(slots=(other,))))
+    fewer, more = (
+        SimpleNamespace(search=rest, holdout=SimpleNamespace(size_after=Size(left, (left, left)), floor=1.0))
+        for left in (9.0, 1.0)
+    )
+    assert _by_another_signal(own, fewer, more, np.random.default_rng(0)) is (signal == "pressure")
+
+
+@pytest.mark.parametrize(
+    ("reads", "law", "could"),
+    [
+        (("speed_magnitude", "direction"), ("motor_speed",), True), (("pressure_sum",), ("pressure",), True),
+        (("displacement",), ("displacement",), True), (("pressure_sum",), ("pressure", "displacement"), False),
+        (("speed",), ("motor_speed",), False),
+    ],
+)  # fmt: skip
+def test_a_law_may_be_a_names_where_it_reads_what_the_names_own_does(reads, law, could):
+    slot = Slot("nobody's", "", (0,), origin=(SimpleNamespace(signals=reads, opposing=True), None))
+    scored = Scored(Law(tuple(Factor("linear", signal) for signal in law), True), 1.0, 1.0, 1.0, np.zeros(0))
+    assert _could_be(scored, slot, False) is could
 
 
 @dataclass(frozen=True)

@@ -10,6 +10,7 @@ from winch_friction.discrepancy import proof as module
 from winch_friction.discrepancy.engine.chance import Size
 from winch_friction.discrepancy.preparation.prepare import PreparedRun
 from winch_friction.discrepancy.proof import adds, drift_note, drive_of, leaves_too_much, worse_runs
+from winch_friction.discrepancy.thresholds import LIMITS
 
 RUNS, BLOCKS = 8, 100
 RUN = np.repeat(np.arange(RUNS), BLOCKS)
@@ -248,3 +249,108 @@ def test_a_gap_after_is_read_at_the_times_of_the_gap_before_and_in_bar_of_its_ow
     assert found.x == pytest.approx(np.column_stack([at, np.full(len(at), 3.0)]))
     assert found.features["load"] == pytest.approx(at)
     assert found.direction == pytest.approx(np.where(at < 2, 1.0, -1.0))
+
+
+# -- by figures of either side
+def test_what_a_name_takes_beside_others_is_the_root_of_what_the_squares_differ_by():
+    """From 0.5 to 0.49 that is 0.0995, ten times what the two differ by."""
+    fewer = side(0.5)
+    assert adds(fewer, side(0.49, least_noise=0.09), np.random.default_rng(0))
+    assert not adds(fewer, side(0.49, least_noise=0.11), np.random.default_rng(0))
+    assert not adds(side(0.49), side(0.5, least_noise=0.0), np.random.default_rng(0))
+
+
+def test_a_refit_is_held_against_the_floor_that_the_names_leave():
+    """A late signal in a quick sea looks like noise as long as it is there."""
+    refit, repaired = side(1.0, noise_floor=0.99), side(0.5, noise_floor=0.06, least_noise=0.08)
+    assert module.left_beside_a_refit(refit, repaired) == pytest.approx(0.24 / 0.99)
+
+
+@pytest.mark.parametrize(
+    ("refit", "repaired", "said"),
+    [
+        ({}, {}, ""),
+        ({"noise_floor": 2.0, "least_noise": 9.0}, {}, ""),  # what the refit's own noise is has no say
+        ({}, {"noise_floor": 1.2}, "a mere refit of the model leaves the locked runs at their noise"),
+        ({}, {"least_noise": 3.0}, "which is less than any balance closes"),
+        ({}, {"interval": (0.4, 3.1)}, "the locked gap of 3 does not fall surely (to 0.5)"),
+    ],
+)
+def test_names_are_proven_by_the_noise_and_the_balance_that_they_leave(monkeypatch, refit, repaired, said):
+    monkeypatch.setattr(module, "worse_runs", lambda *_: ())
+    interval = repaired.pop("interval", (2.9, 3.1))
+    fitted, named = side(1.0, before=3.0, **refit), side(0.5, before=3.0, **repaired)
+    for each in (fitted, named):
+        each.size_before, each.excused = Size(3.0, interval), each.floor
+    why = module.unproven("wave", fitted, named, np.random.default_rng(0))
+    assert (said in why) if said else why == ""
+    if "least_noise" in repaired:
+        assert why == "wave takes 3 off the locked gap, which is less than any balance closes"
+
+
+def test_names_are_refused_where_a_locked_run_grows_or_none_has_a_block(monkeypatch):
+    fitted, named = side(1.0, before=3.0), side(0.5, before=3.0)
+    for each in (fitted, named):
+        each.size_before, each.excused = Size(3.0, (2.9, 3.1)), each.floor
+    monkeypatch.setattr(module, "worse_runs", lambda own, _: ("run 1", "run 4") if own is named else ("none",))
+    assert module.unproven("wave", fitted, named, np.random.default_rng(0)) == "wave: the gap of run 1, run 4 grows"
+    monkeypatch.setattr(module, "worse_runs", lambda *_: ())
+    named.blocks.y = np.zeros(0)
+    assert "no usable block" in module.unproven("wave", fitted, named, np.random.default_rng(0))
+
+
+@pytest.mark.parametrize(("share", "refused"), [(0.01, True), (-0.01, False)])
+def test_most_of_the_training_runs_gap_and_a_part_of_the_locked_ones_may_not_be_left(share, refused):
+    for which, most in ((module.leaves_most, LIMITS.outdone), (leaves_too_much, LIMITS.left_over)):
+        left = float(np.sqrt(0.01 + (most + share) * (1.0 - 0.01)))
+        assert bool(which(side(left, 1.0, 0.06, 0.08))) is refused
+
+
+def test_two_models_are_compared_over_the_runs_that_were_asked(monkeypatch):
+    """Run a has three blocks with noise of 3 and a balance that closes to 1, run c one of 4 and 2."""
+    least, noise = {"a": 1.0, "c": 2.0}, {0: 3.0, 1: 4.0}
+    blocks = SimpleNamespace(
+        run=np.array([0, 0, 0, 1]),
+        y=np.array([3.0, 0.0, 0.0, 4.0]),
+        x=np.array([[1.0, 9.0], [0, 9], [0, 9], [2.0, 9.0]]),
+    )
+    monkeypatch.setattr(module, "_blocks", lambda old, new, length: (old.name, new.name, length))
+    monkeypatch.setattr(module, "joined", lambda tables, weights: blocks if len(tables) == 2 == len(weights) else None)
+    monkeypatch.setattr(module, "segment_length", lambda total: total)
+    monkeypatch.setattr(module, "least_noise_of", lambda old: least[old.name])
+    monkeypatch.setattr(module, "_noise", lambda values, skew, blocks, k, least: noise[k] * (least == k + 1))
+    monkeypatch.setattr(module, "drive_of", lambda old: {"a": 10.0, "c": 20.0}[old.name])
+    before, after = (
+        SimpleNamespace(prepared=tuple(SimpleNamespace(name=name, time=np.arange(3.0)) for name in "abc")) for _ in "12"
+    )
+    found = module.beside(before, after, ("c", "a"))
+    assert [run.name for run in found.runs] == ["a", "c"]
+    assert (found.before.tolist(), found.after.tolist()) == ([3.0, 0.0, 0.0, 4.0], [1.0, 0.0, 0.0, 2.0])
+    assert found.noise_floor == pytest.approx(np.sqrt((3 * 9.0 + 16.0) / 4.0))
+    assert found.least_noise == pytest.approx(np.sqrt((3 * 1.0 + 4.0) / 4.0))
+    drive = np.sqrt(3 * 100.0 + 400.0)
+    assert found.relative == (pytest.approx(5.0 / drive), pytest.approx(np.sqrt(5.0) / drive))
+    assert np.isnan(found.size_before.value)
+
+
+def test_noise_is_what_neither_a_late_signal_nor_its_change_leaves(monkeypatch):
+    asked = []
+    monkeypatch.setattr(module, "noise_of_run", lambda *each: asked.append(each) or 7.0)
+    blocks = SimpleNamespace(run=np.array([0, 1, 1, 1]), position=np.array([5, 0, 1, 2]))
+    values, skew = np.array([9.0, 1.0, 2.0, 3.0]), np.array([4.0, 0.0, 1.0, 4.0])
+    assert module._noise(values, skew, blocks, 1, 0.5) == 7.0
+    own, position, least, late = asked[0]
+    assert (own.tolist(), position.tolist(), least) == ([1.0, 2.0, 3.0], [0, 1, 2], 0.5)
+    assert late.tolist() == [[0.0, 1.0], [1.0, 2.0], [4.0, 3.0]]
+    assert module._noise(values, skew, blocks, 0, 0.5) == 7.0
+    assert asked[1][3].tolist() == [4.0]
+    assert module._noise(values, skew, blocks, 2, 0.5) == 0.0
+
+
+def test_the_loss_of_a_run_is_the_median_of_what_is_left_along_its_motion():
+    runs = (SimpleNamespace(start=5.0), SimpleNamespace(start=7.0), SimpleNamespace(start=9.0))
+    blocks = SimpleNamespace(run=np.array([0, 0, 0, 0, 2, 1]), direction=np.array([1.0, -1.0, 1.0, 0.0, -1.0, 0.0]))
+    own = SimpleNamespace(
+        runs=runs, blocks=blocks, after=np.array([2.0, -3.0, 90.0, 500.0, 4.0, 1.0]), before=np.full(6, 77.0)
+    )
+    assert module._losses(own) == [(5.0, 3.0), (9.0, -4.0)]

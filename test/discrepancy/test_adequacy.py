@@ -13,6 +13,7 @@ from winch_friction.discrepancy.adequacy import (
     Check,
     _by_way,
     _distinct,
+    _hangs_still,
     long_enough,
     of_prepared,
     of_records,
@@ -333,3 +334,28 @@ def test_a_record_that_lasts_just_long_enough_does(value, met):
     assert found["longest record"].met is met
     assert found["records that can be used"].value == pytest.approx(value)
     assert found["fastest log"].value == pytest.approx(499.0 / value / 0.98)
+
+
+@pytest.mark.parametrize(("left", "still"), [(0.69, True), (0.72, False)])
+def test_a_load_hangs_still_where_half_of_the_gaps_square_is_gone_with_its_inertia(left, still):
+    """Beside what friction that is off adds in either direction; of no sample there is nothing to say."""
+    swell, way = np.sin(np.linspace(0.0, 60.0, 4000)), np.where(np.arange(4000) % 20 < 10, 1.0, -1.0)
+    other = np.cos(np.linspace(0.0, 60.0, 4000))
+    taken = np.sqrt(1.0 - left**2) * swell
+    run = SimpleNamespace(
+        direction=way, used=np.ones(4000, bool), load=2e4, radius=0.8, gear_ratio=200.0,
+        gap=left * other - taken + 30.0 * way,
+        load_acceleration=taken / (2e4 * 0.8 / 200.0),
+    )  # fmt: skip
+    assert _hangs_still(run) is still
+    run.used = np.zeros(4000, bool)
+    assert _hangs_still(run) is False
+
+
+def test_a_reversal_through_rest_is_one_and_one_load_and_displacement_are_enough():
+    run = prepared("a", 20.0, 20.0)
+    run.used = np.ones(len(run.time), bool)  # at rest as well
+    found = checked(run)
+    assert found["reversals"].value == 1.0
+    assert [(found[what].needed, found[what].met) for what in ("loads", "displacements")] == [(1.0, True)] * 2
+    assert found["oil temperatures, span"].needed == found["reversals"].needed == 0.0

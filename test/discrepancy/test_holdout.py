@@ -149,3 +149,10 @@ def test_a_share_or_a_seed_that_is_none_is_refused_by_its_value(fraction, seed, 
 def test_no_run_is_refused():
     with pytest.raises(InputError, match="no run given"):
         refuse([], 0.25, 0)
+
+
+@pytest.mark.parametrize(("count", "whole"), [(3, False), (4, True)])
+def test_four_runs_are_enough_to_lock_whole_ones(count, whole):
+    split = lock_holdout(runs(count), 0.25, np.random.default_rng(3))
+    assert len(split.runs) == (count if whole else 2 * count)
+    assert len(split.holdout) == (1 if whole else count)

@@ -53,3 +53,14 @@ def test_what_would_supply_it_is_heave_compensation():
     check = of_swing(ELASTIC, [(run(12.0), LOUD)])
     assert "12 s, needed 60 s" in check.sentence
     assert supplying([check]) == "ahc_55t_215"
+
+
+@pytest.mark.parametrize(("kept", "met"), [(1.9, False), (2.1, True)])
+def test_twice_the_floor_elsewhere_is_a_gap_that_is_no_swing(kept, met):
+    assert of_swing(ELASTIC, [(run(100.0, groups=1), kept * QUIET), (run(12.0), LOUD)]).met is met
+
+
+def test_the_longest_of_the_records_that_do_not_tell_counts():
+    check = of_swing(ELASTIC, [(run(12.0), LOUD), (run(31.0), LOUD), (run(20.0), LOUD)])
+    assert (check.value, check.met) == (31.0, False)
+    assert of_swing(ELASTIC, [(run(12.0), LOUD), (run(61.0), LOUD)]).met

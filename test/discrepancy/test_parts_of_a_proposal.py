@@ -153,7 +153,9 @@ def test_a_search_of_laws_knows_each_runs_unit_and_its_motors(monkeypatch):
     monkeypatch.setattr(proposals, "_covered", lambda word, runs: word.name)
     kinds = {"motor_speed": ("linear", "step"), "pressure": ("root",)}
     monkeypatch.setattr(proposals, "factors", lambda word, seen: [Factor(k, word.name) for k in kinds.get(seen, ())])
-    monkeypatch.setattr(proposals, "_evaluated", lambda words, runs, most: asked.update(words=words, most=most))
+    monkeypatch.setattr(
+        proposals, "_evaluated", lambda words, runs, most: asked.update(words=words, most=most, runs=runs)
+    )
     blocks = SimpleNamespace(run=np.array([0, 1, 1]), y=np.zeros(3), direction="ways")
     cross = SimpleNamespace(
         problem=SimpleNamespace(blocks=blocks), explain=lambda _: SimpleNamespace(loss=9.0), floor=1.0
@@ -162,6 +164,7 @@ def test_a_search_of_laws_knows_each_runs_unit_and_its_motors(monkeypatch):
     two.unit_torque = 8.0
     search = SimpleNamespace(cross=cross, expansion=SimpleNamespace(runs=(ONE, two, run([1.0], [1], "locked"))))
     assert proposals.near_laws(search, ("a", "b"), RNG, ("step",)) == []
+    assert [each.name for each in asked["runs"]] == ["a", "b"]
     assert asked["torque"] == [0.25, 0.125, 0.125]
     assert asked["members"] == [[2.0, 2.0, 2.0], [3.0, 0.0, 0.0]]
     assert (asked["most"], asked["direction"]) == (2, "ways")

@@ -98,9 +98,9 @@ class FitRange:
         said = []
         for column, (unit, factor) in _UNITS.items():
             lower, upper = (each / factor for each in getattr(self, column))
-            span = f"{lower:.4g} ... {upper:.4g}" if np.isfinite(upper) else f"from {lower:.4g} on"
+            span = f"{lower:.4g} ... {upper:.4g} {unit}" if np.isfinite(upper) else f"from {lower:.4g} {unit} on"
             if not inside[column].all():
-                said.append(f"{(~inside[column]).sum()} by {column} ({span} {unit} count)")
+                said.append(f"{(~inside[column]).sum()} by {column} ({span} count)")
         return f"{table.name}: {len(table) - kept} of {len(table)} rows are left out: {', '.join(said)}" if said else ""
 
     def _off(self, table: SupplierTable) -> str:

@@ -8,7 +8,7 @@ import pytest
 
 from winch_friction.discrepancy import expansion
 from winch_friction.discrepancy.expansion import Expansion, Given
-from winch_friction.discrepancy.preparation.wire_mode import Mode
+from winch_friction.discrepancy.preparation.suspended_load import Mode
 from winch_friction.physics.channels import GRAVITY
 from winch_friction.physics.friction import FrictionModel, term_named
 from winch_friction.physics.friction.correction import Correction

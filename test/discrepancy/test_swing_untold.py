@@ -7,6 +7,7 @@ import pytest
 
 from winch_friction.discrepancy.adequacy import of_swing
 from winch_friction.discrepancy.next_experiment import supplying
+from winch_friction.discrepancy.preparation.suspended_load import Mode
 
 RIGID, ELASTIC = SimpleNamespace(wire_stiffness=np.inf), SimpleNamespace(wire_stiffness=8e7)
 
@@ -15,7 +16,7 @@ def run(seconds, groups=2, damping=0.0, frequency=3.0, samples=1000):
     return SimpleNamespace(
         time=np.array([0.0, seconds]),
         groups=[None] * groups,
-        wire_mode=(frequency, damping),
+        wire_mode=Mode(frequency, damping),
         used=np.ones(samples, bool),
     )
 

@@ -433,6 +433,7 @@ def test_what_one_kind_of_run_alone_has_is_told_by_the_kind(kinds, told):
     there = np.array([True, True, False, False])
     runs = [logged([value], kind=kind) for kind, value in zip(kinds, (1.0, 4.0, 2.0, 3.0), strict=True)]
     assert told_by_a_signal(runs, there) == told
+    assert not told_by_a_signal([runs[0], runs[0]], np.ones(2, bool))  # all have it, and all are alike
 
 
 @pytest.mark.parametrize(

@@ -349,7 +349,7 @@ def test_a_freed_base_has_room_for_its_reach_inside_its_bounds(monkeypatch):
     """Of what it has moved from the seed already, by `shift`, the room is taken off."""
     monkeypatch.setattr(estimates, "CrossFit", lambda problem: problem)
     reach = LIMITS.seed_reach
-    base = SimpleNamespace(parameters=3, shift=np.array([1.0, -1.0, 0.0]), scale=np.array([1.0, 0.1, 0.1]))
+    base = SimpleNamespace(parameters=3, shift=np.array([1.0, -1.0, 0.0]), scale=np.array([0.5, 0.1, 0.1]))
 
     @dataclass(frozen=True)
     class Part:
@@ -368,8 +368,8 @@ def test_a_freed_base_has_room_for_its_reach_inside_its_bounds(monkeypatch):
         given=SimpleNamespace(model=at_bound), expansion=SimpleNamespace(model=MODEL),
     )  # fmt: skip
     found = estimates._wide(search).layout
-    assert found.lower == pytest.approx([-2.0, -reach + 1.0, 0.0, -7.0])
-    assert found.upper == pytest.approx([1.5, reach + 1.0, reach, 7.0])
+    assert found.lower == pytest.approx([-4.0, -reach + 1.0, 0.0, -7.0])
+    assert found.upper == pytest.approx([3.0, reach + 1.0, reach, 7.0])
     assert layout.lower.tolist() == [-1.0, -1.0, -1.0, -7.0]
 
 

@@ -27,7 +27,7 @@ from winch_friction.records.runs import write_run
 
 ROOT = str(Path(winch_friction.__file__).parent) + "/"
 MOST_OF_A_GAP = 56
-MOST_OF_A_MESSAGE = 14
+MOST_OF_A_MESSAGE = 15
 
 
 class Visited:

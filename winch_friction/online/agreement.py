@@ -12,7 +12,8 @@ from typing import Any
 import numpy as np
 
 from winch_friction.compensation.safe_output import AGAINST_SPEED, LONGEST_LAG
-from winch_friction.online.doubt import Doubt, LoadAgainstDrive, StandingReadings, WireAgainstSpeed, span
+from winch_friction.online.doubt import Doubt, LoadAgainstDrive, span
+from winch_friction.online.drive_by_itself import watches
 from winch_friction.physics.channels import column_unit
 from winch_friction.physics.signals import FloatArray, Sample
 from winch_friction.physics.winch.crane import Crane
@@ -252,8 +253,7 @@ class Agreement:
         self._command = self._step = math.nan
         self._jumps: list[float] = []
         self._speeds, self._load = Doubt(SPEED_TIME), LoadAgainstDrive(self._crane, self._ranges)
-        self._still = StandingReadings(AGAINST_SPEED * self._crane.speed_scale)
-        self._wire = WireAgainstSpeed(self._crane, self._ranges)
+        self._watches = watches(self._crane, self._ranges)
         # messages in batches: a command that is right in one sample of each is none
         self._turns = Doubt(LONGEST_LAG, forgiven=LONGEST_LAG)
 
@@ -269,7 +269,7 @@ class Agreement:
         found = {
             "speed_reference turns against motor_speed": self._turns.step(self._turns_against(sample), dt),
             "speed_reference contradicts motor_speed": self._speeds.step(self._speeds_differ(sample), dt),
-            **{each.contradiction(sample, dt): True for each in (self._load, self._still, self._wire)},
+            **{each.contradiction(sample, dt): True for each in (self._load, *self._watches)},
             "speed_reference jumps to and fro: two publishers?": self._chatters(sample),
         }
         return tuple(name for name, stands in found.items() if name and stands)

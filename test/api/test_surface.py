@@ -50,6 +50,39 @@ def test_a_private_name_is_refused_with_the_public_ones():
         wf.records_  # noqa: B018
 
 
+@pytest.mark.parametrize(
+    ("call", "said"),
+    [
+        (lambda c, m, r: wf.replay(r, "my.yaml", m),
+         "replay: crane must be a Crane, found the text 'my.yaml': wf.load_crane('my.yaml')"),
+        (lambda c, m, r: wf.check([r], c, Path("a")),
+         "check: model must be a FrictionModel, found a PosixPath: wf.load_model('a')"),
+        (lambda c, m, r: wf.friction_curve(c, m), "friction_curve: model must be a FrictionModel, found a Crane"),
+        (lambda c, m, r: wf.torque(m, "a.csv", c),
+         "torque: run must be a Run, found the text 'a.csv': wf.read_run('a.csv', crane)"),
+        (lambda c, m, r: wf.gap("runs", c, m), "gap: runs must be a list of runs or files, found the text 'runs'"),
+        (lambda c, m, r: wf.gap(r, c, m), "gap: runs must be a list of runs or files, found a Run"),
+        (lambda c, m, r: wf.gap(None, c, m), "gap: runs must be a list of runs or files, found a NoneType"),
+        (lambda c, m, r: wf.check([r, 3], c), "check: runs: each must be a run, a run file or a bag, found a int"),
+        (lambda c, m, r: wf.fit(r, c, motor=m), "fit: data must be a list of runs or files, found a Run"),
+        (lambda c, m, r: wf.load_model(m), "load_model: name must be a file or a shipped name, found a FrictionModel"),
+        (lambda c, m, r: wf.write_run(r, None), "write_run: path must be a file, found a NoneType"),
+        (lambda c, m, r: wf.save_model(c, "a.yaml"), "save_model: model must be a FrictionModel, found a Crane"),
+    ],
+)  # fmt: skip
+def test_an_argument_of_another_kind_is_refused_with_what_to_give(call, said):
+    """`'str' object has no attribute 'speed_scale'`, and "r: no such file" of the folder "runs"."""
+    with pytest.raises(wf.InputError) as refused:
+        call(wf.load_crane("emps"), wf.load_model("emps_viscous"), wf.from_frame(NO_LOAD))
+    assert str(refused.value) == said
+
+
+def test_a_default_is_none_and_what_lacks_is_said_by_python():
+    assert wf.check([], wf.load_crane("emps"), None).plausible
+    with pytest.raises(TypeError, match="torque.* missing 2 required positional arguments"):
+        wf.torque(wf.load_model("emps_viscous"))
+
+
 def test_importing_the_package_costs_nothing():
     code = "import sys, winch_friction; print(sorted({'numpy', 'sympy', 'scipy', 'pandas'} & set(sys.modules)))"
     result = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)

@@ -319,6 +319,18 @@ def test_gains_for_unknown_terms_are_refused():
         compensator(gains={"strobeck": 1.0})
 
 
+def test_a_load_that_a_load_cell_could_not_show_is_none_that_may_be_set():
+    """900 t on a winch of 12 t: the feedforward was at the absolute limit for the second until the drive's torque
+    contradicted it."""
+    refused = r"^load 300001 kg is more than this crane can have \(300000 kg\); is it in kg\?$"
+    with pytest.raises(InputError, match=refused):
+        compensator(load=300_001.0)
+    running = compensator(load=300_000.0)
+    with pytest.raises(InputError, match=refused):
+        running.configure(CompensatorConfig(load=300_001.0, scale=0.3))
+    assert running.config.scale != 0.3
+
+
 def test_what_only_a_sensor_shows_is_not_compensated():
     model = load_model("emps_symmetric")
     each = FeedforwardCompensator(load_crane("emps"), model, CompensatorConfig(scale=1.0, ramp_time=0.1))

@@ -1,7 +1,7 @@
 """Logs that are no run of the winch: what ended in a traceback, and what is said of a log that lacks a channel."""
 
 import numpy as np
-from importing.logs import example, rows_of, write_text
+from importing.logs import GERMAN, example, rows_of, write_text
 
 from winch_friction.cli.main import run
 
@@ -61,6 +61,18 @@ def test_signals_of_one_run_in_two_files_are_to_be_joined(tmp_path, capsys):
         == 2
     )
     assert "join them by time into one file first" in capsys.readouterr().err
+
+
+def test_a_displacement_that_nobody_logs_may_be_constant(tmp_path, capsys):
+    """Motors of constant displacement have no feedback; a column was asked for that no such winch has."""
+    known = {channel: words for channel, words in GERMAN.items() if not channel.endswith("displacement")}
+    log = write_text(tmp_path / "log.csv", rows_of(example("test_02"), known))
+    words = ["import", str(log), "--propose", "--crane", "crane_150t", "--map", str(tmp_path / "m.yaml"), "--overwrite"]
+    assert run(words) == 2
+    hint = "main.displacement.constant=215 cm^3/rev"
+    assert f"motors of constant displacement: --set '{hint}'" in capsys.readouterr().err
+    assert run([*words, "--set", hint]) == 0
+    assert "main.displacement <- 215 cm^3/rev, a constant\n" in capsys.readouterr().out
 
 
 def test_a_column_of_the_right_name_without_a_number_is_said_to_have_none(tmp_path, capsys):

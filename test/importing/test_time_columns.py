@@ -113,6 +113,16 @@ def test_a_date_beside_the_clock_dates_the_run_although_day_and_month_are_open(t
     assert read_run(tmp_path / "runs" / "log.csv").time[0] > 1.7e9
 
 
+def test_a_column_of_remarks_is_no_part_of_the_time(typed):
+    """`Zeitstempel + Bemerkung` was proposed, and the first remark was no time."""
+    count, cells = typed.count, [""] * typed.count
+    cells[count // 3] = "Start; gut"
+    dated = stamps(count, "01.03.2026 10:{:02}:{:02},{:03}")
+    status, said = typed(["Zeitstempel", *dated], ["Bemerkung", *cells])
+    assert status == 0, said.err
+    assert "time <- Zeitstempel (datetime)" in said.out
+
+
 def test_times_that_no_form_reads_are_shown(typed):
     cells = stamps(typed.count, "Sun Mar 01 10:{:02}:{:02}.{:03} 2026")
     status, said = typed(["Time", *cells])

@@ -17,7 +17,7 @@ from winch_friction.physics.errors import from_mapping
 
 NODES = Path(__file__).resolve().parents[2] / "config" / "nodes"
 KINDS = {
-    "**": (NodeOptions,),
+    "*": (NodeOptions,),
     "compensator": (NodeOptions, CompensatorConfig, CompensatorNodeOptions),
     "estimator": (NodeOptions, EstimatorConfig, EstimatorNodeOptions),
     "simulator": (NodeOptions, SimulatorNodeOptions),
@@ -41,6 +41,18 @@ def test_names_and_values_are_a_nodes_own(node: str, parameters: dict[str, Any])
         from_mapping(kind, {k: tuple(filter(None, v)) if isinstance(v, list) else v for k, v in own.items()}, node)
     parameters.pop("use_sim_time", None)
     assert parameters == {}
+
+
+@pytest.mark.parametrize("file", sorted(NODES.glob("*.yaml")), ids=lambda file: file.name)
+def test_what_the_command_line_says_overrules_a_shipped_file(file: Path) -> None:
+    """Under `/**` it became part of that section, and the compensator's own went on saying 0.9 of a scale of 0.5."""
+    rclpy = pytest.importorskip("rclpy")
+    context = rclpy.Context()
+    rclpy.init(args=["--ros-args", "--params-file", str(file), "-p", "scale:=0.25"], context=context)
+    node = rclpy.create_node("compensator", context=context, automatically_declare_parameters_from_overrides=True)
+    assert (node.get_parameter("scale").value, node.has_parameter("crane")) == (0.25, True)
+    node.destroy_node()
+    rclpy.shutdown(context=context)
 
 
 def test_the_commented_file_shows_the_compensators_defaults() -> None:

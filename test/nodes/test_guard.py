@@ -302,12 +302,22 @@ def test_a_node_is_ended_whatever_became_of_it(
 ) -> None:
     library, ending = Library(monkeypatch), SimpleNamespace(asked=False)
     node = SimpleNamespace(
-        end=lambda: library.calls.append("end"), destroy_node=lambda: library.calls.append("destroy")
-    )
+        end=lambda: library.calls.append("end"), destroy_node=lambda: library.calls.append("destroy"),
+        get_logger=lambda: SimpleNamespace(warning=library.calls.append),
+    )  # fmt: skip
+    monkeypatch.setattr(run, "overruled", lambda node, given: [f"no effect: {' '.join(given)}"])
     monkeypatch.setattr(run, "_start", lambda *of: library.calls.append("start") or started)
     monkeypatch.setattr(run, "_spin", lambda *of: library.calls.append("spin") or spun)
     assert run._run(lambda: node, ("a", "b"), ending) == status
-    assert library.calls == [["a", "b"], "start", *([] if started else ["spin"]), "end", "destroy", "shutdown"]
+    assert library.calls == [
+        ["a", "b"],
+        "no effect: a b",
+        "start",
+        *([] if started else ["spin"]),
+        "end",
+        "destroy",
+        "shutdown",
+    ]
     assert not node.told_to_end()
     ending.asked = True
     assert node.told_to_end()

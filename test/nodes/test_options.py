@@ -1,5 +1,6 @@
 """Parameters come from the option dataclasses, bounded and described."""
 
+import math
 from dataclasses import dataclass
 from typing import Any
 
@@ -8,7 +9,14 @@ from rclpy.exceptions import InvalidParameterValueException, ParameterUninitiali
 
 from winch_friction.compensation import CompensatorConfig
 from winch_friction.nodes.options import FIXED, NodeOptions
-from winch_friction.nodes.parameters import OptionParameters, check_qualities, declare, declare_all, unknown_parameters
+from winch_friction.nodes.parameters import (
+    OptionParameters,
+    check_qualities,
+    declare,
+    declare_all,
+    overruled,
+    unknown_parameters,
+)
 from winch_friction.nodes.simulator import SimulatorNodeOptions
 from winch_friction.physics.errors import InputError, Limits, check, option
 
@@ -267,6 +275,32 @@ def test_an_override_that_is_no_parameter_is_said_with_what_may_be_meant() -> No
         "parameter 'gains' is not known and has no effect; did you mean gains.b or gains.a?",
         "parameter 'wiat' is not known and has no effect; did you mean wait?",
     ]
+
+
+@pytest.mark.parametrize(
+    ("given", "held", "stands"),
+    [
+        ("-p share:=0.5", 0.9, False), ("--param share:=0.5", 0.9, False), ("-p share:=0.90", 0.9, True),
+        ("-p share:=5e-1", 0.5, True), ("-p share:=.nan", math.nan, True), ("-p share:=true", True, True),
+        ("-p share:=true", False, False), ("-p share:=[a, b]", ("a", "b"), True), ("-p share:=[a]", ["b"], False),
+        ("-p share:=one", "two", False), ("-p share:=0.5 -p share:=0.9", 0.9, True), ("-p share:=[", 0.9, False),
+        ("-p board:share:=0.5", 0.9, True), ("-p other:=0.5", 0.9, True), ("-- -p share:=0.5", 0.9, True),
+        ("-p", 0.9, True),
+    ],
+)  # fmt: skip
+def test_what_a_parameter_file_overrules_of_the_command_line_is_said(given: str, held: object, stands: bool) -> None:
+    """rclpy obeys the section of a file that names the node, without a word: a scale of 0.9 where 0.5 was typed."""
+    board = Board()
+    board._parameter_overrides = {"share": Override(held)}
+    arguments = given.replace("[a, b]", "[a,b]").split()
+    assert overruled(board, ["board", "-p", "share:=7", "--ros-args", *arguments]) == (
+        []
+        if stands
+        else [
+            f"-p {arguments[-1]} has no effect: a parameter file says {held} in the section of this node; "
+            f"write -p board:{arguments[-1]}"
+        ]
+    )
 
 
 @pytest.mark.parametrize(("depth", "taken"), [(0, True), (100_000, True), (100_001, False), (-1, False)])

@@ -3,10 +3,10 @@
 import pytest
 from sea import CRANE, TOPICS, Fed
 
-from winch_friction.online.agreement import Plausibility
 from winch_friction.online.before_doubt import UNSEEN, BeforeDoubt
 from winch_friction.online.consumer import HeldTorque
 from winch_friction.physics.winch.operating_point import ChannelRanges
+from winch_friction.records.sample_stream import Plausibility
 
 
 class Law:

@@ -13,7 +13,6 @@ from winch_friction.online import before_doubt, intake
 from winch_friction.online.agreement import (
     Agreement,
     Motions,
-    Plausibility,
     Stamp,
     StampWatch,
     Voices,
@@ -34,6 +33,7 @@ from winch_friction.online.intake import ModelIntake, parse
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.signals import GroupSample, Sample
 from winch_friction.physics.winch.operating_point import Change, ChannelRanges
+from winch_friction.records.sample_stream import Plausibility
 
 RANGES = ChannelRanges(CRANE, TOPICS.groups)
 
@@ -425,7 +425,7 @@ def learner(**attributes):
     own.options, own.model_period, own.last = ServiceOptions(), 5.0, None
     own._published = own._published_at = -math.inf
     own.contradiction = ""
-    own._load = own._balance = own._gain = SimpleNamespace(pending=False)
+    own._load = own._drive = own._balance = own._gain = SimpleNamespace(pending=False)
     own.law = SimpleNamespace(seed=replace(SEED, name="seed"), model=lambda: replace(SEED, name="learned"))
     own._before = SimpleNamespace(believed=SimpleNamespace(model=replace(SEED, name="before")))
     for name, value in attributes.items():
@@ -448,7 +448,7 @@ def test_an_estimators_models_are_a_period_of_the_samples_and_a_second_of_the_cl
 
 @pytest.mark.parametrize(("pending", "contradiction", "name"), [
     ((), "", "learned"), (("_load",), "", "before"), (("_balance",), "", "before"), (("_gain",), "", "before"),
-    ((), "a load", "seed"), (("_gain",), "a load", "seed"),
+    (("_drive",), "", "before"), ((), "a load", "seed"), (("_gain",), "a load", "seed"),
 ])  # fmt: skip
 def test_what_is_published_under_a_doubt_was_known_before_it(pending, contradiction, name):
     own = learner(contradiction=contradiction, last=SimpleNamespace(time=1.0))

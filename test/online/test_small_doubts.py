@@ -26,7 +26,7 @@ from winch_friction.online.doubt import (
     Doubt,
     LoadAgainstDrive,
     StandingReadings,
-    _Way,
+    Way,
     span,
 )
 from winch_friction.online.load_balance import LoadBalance
@@ -154,7 +154,7 @@ def test_neither_a_gap_nor_a_jump_back_is_time_in_which_something_was_wrong(last
 
 # -- the load
 def test_a_mean_of_one_way_forgets_what_was_long_ago():
-    way = _Way()
+    way = Way()
     for drive in (100.0, 300.0):
         for _ in range(round(5.0 * MEMORY / 0.1)):
             way.step(50.0, drive, 0.1)

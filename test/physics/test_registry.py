@@ -5,7 +5,7 @@ import sympy as sp
 from own_term_files import forgotten, own_terms
 
 from winch_friction.physics.errors import InputError
-from winch_friction.physics.friction import Scope, Term, register, registered_terms, term_named
+from winch_friction.physics.friction import Scope, Term, register, registered_terms, symbols, term_named
 from winch_friction.physics.friction.symbols import p
 from winch_friction.physics.friction.term import load_file
 
@@ -61,7 +61,16 @@ def test_a_users_file_adds_a_term(tmp_path):
 @pytest.mark.parametrize(
     ("text", "said"),
     [
-        ("1/0\n", "wrong.py: ZeroDivisionError"),
+        ("\n1/0\n", r"wrong.py: ZeroDivisionError: division by zero \(line 2\)$"),
+        (
+            "from winch_friction.terms import signals as s\ns.rope\n",
+            r"no signal 'rope'; an equation may read direction, ",
+        ),
+        (
+            "from winch_friction.terms import *\nk = Parameter('k_idle', 'N*m', 1.0)\n"
+            "register(Term('idle', signals.wire_out, (k,), Scope.SHAFT, 'a test', 'gear and drum'))\n",
+            "wrong.py: term 'idle': its parameter k_idle stands in no equation of it",
+        ),
         ("register = None\n", "wrong.py: declares no term"),
         ("def\n", "wrong.py: SyntaxError"),
         ("raise SystemExit\n", "wrong.py: SystemExit"),
@@ -69,12 +78,19 @@ def test_a_users_file_adds_a_term(tmp_path):
         ("from winch_friction.physics.friction import *\nregister(term_named('coulomb'))\n", "wrong.py: .*twice"),
     ],
 )
-def test_a_wrong_users_file_is_one_line(tmp_path, text, said):
-    path = tmp_path / "wrong.py"
-    path.write_text(text)
+def test_a_wrong_users_file_is_one_line(tmp_path, monkeypatch, text, said):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "wrong.py").write_text(text)
     with pytest.raises(InputError, match=said) as refused:
-        load_file(path)
+        load_file("wrong.py")
     assert "\n" not in str(refused.value)
+    assert "idle" not in registered_terms()
+
+
+def test_a_signal_is_read_by_the_name_that_is_shown_for_it_as_well():
+    """`show` says that a term reads speed_magnitude, and `signals.speed_magnitude` was not there."""
+    for signal in symbols.SIGNAL_OF_SYMBOL.values():
+        assert getattr(symbols, signal.name) is signal.symbol
 
 
 @pytest.mark.parametrize(

@@ -296,6 +296,8 @@ def test_a_slew_limit_that_cannot_let_go_is_refused_when_it_is_set(fed: tuple[Be
     assert abs(efforts(torque)[-1]) > 150.0
     with pytest.raises(InputError, match="cannot let go of"):
         node.set({"slew_limit": 500.0})
+    with pytest.raises(InputError, match="load 400000 kg is more than this crane can have"):
+        node.set({"load": 400e3})
     node.set({"scale": 0.3})
     bench.drive(1.5)
     assert "Traceback" not in bench.log("compensator")

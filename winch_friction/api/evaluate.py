@@ -5,12 +5,14 @@ from typing import Any
 
 import numpy as np
 
+from winch_friction.api.arguments import checked
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.friction.model import FrictionModel, completed
 from winch_friction.physics.signals import FloatArray, Run
 from winch_friction.physics.winch.crane import Crane
 
 
+@checked
 def torque(model: FrictionModel, run: Run, crane: Crane, *, load: float | None = None) -> FloatArray:
     """Friction torque along a run, (n,) N m at the motor shaft, all motors; positive when it resists hoisting.
 
@@ -27,6 +29,7 @@ def torque(model: FrictionModel, run: Run, crane: Crane, *, load: float | None =
     return np.array(np.broadcast_to(model.torque(at), (len(time),)), float)
 
 
+@checked
 def contributions(model: FrictionModel, run: Run, crane: Crane, *, load: float | None = None) -> Any:
     """What each term gives along a run: a DataFrame (n, terms) in N m over time; the columns add up to `torque`.
 
@@ -45,6 +48,7 @@ def contributions(model: FrictionModel, run: Run, crane: Crane, *, load: float |
     return frame
 
 
+@checked
 def jacobian(model: FrictionModel, run: Run, crane: Crane, *, load: float | None = None) -> FloatArray:
     """Partial derivatives of `torque` by the model's parameters, (n, parameters), in `model.parameter_names` order.
 
@@ -58,6 +62,7 @@ def jacobian(model: FrictionModel, run: Run, crane: Crane, *, load: float | None
     return model.jacobian(at)
 
 
+@checked
 def friction_curve(
     model: FrictionModel,
     crane: Crane,

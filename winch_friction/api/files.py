@@ -2,10 +2,12 @@
 
 from pathlib import Path
 
+from winch_friction.api.arguments import checked
 from winch_friction.physics.friction.model import FrictionModel
 from winch_friction.physics.winch.crane import Crane
 
 
+@checked
 def load_crane(name: str | Path) -> Crane:
     """A crane from a YAML file, or by shipped name (`winch-friction list cranes`).
 
@@ -21,6 +23,7 @@ def load_crane(name: str | Path) -> Crane:
     return load(name)
 
 
+@checked
 def load_model(name: str | Path) -> FrictionModel:
     """A friction model from a YAML file, or by shipped name (`winch-friction list models`).
 
@@ -36,6 +39,7 @@ def load_model(name: str | Path) -> FrictionModel:
     return load(name)
 
 
+@checked
 def save_model(model: FrictionModel, path: str | Path) -> Path:
     """Write a model file, atomically; nodes, simulator and every verb read it. Returns its path.
 

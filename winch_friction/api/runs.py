@@ -6,11 +6,13 @@ from typing import Any
 
 import numpy as np
 
+from winch_friction.api.arguments import checked
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.signals import Run
 from winch_friction.physics.winch.crane import Crane
 
 
+@checked
 def read_run(path: str | Path, crane: Crane | None = None, **bag_options: Any) -> Run:
     r"""A run in SI from .csv, .parquet, or a rosbag2 (folder, .mcap, .db3).
 
@@ -31,6 +33,7 @@ def read_run(path: str | Path, crane: Crane | None = None, **bag_options: Any) -
     return read(path, crane, **bag_options)
 
 
+@checked
 def write_run(run: Run, path: str | Path) -> Path:
     """Write a run by suffix: .csv, .parquet, .mcap, .db3 or a bag folder; atomically, SI units in the headers.
 

@@ -4,6 +4,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from winch_friction.api.arguments import checked
 from winch_friction.api.results import Check, Fit, Gap, Replay
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.friction.model import FrictionModel
@@ -16,6 +17,7 @@ if TYPE_CHECKING:
 Runs = Sequence["Run | str | Path"]
 
 
+@checked
 def simulate(
     scenario: str | Path,
     crane: Crane,
@@ -44,6 +46,7 @@ def simulate(
     return simulated(chosen.override(changes) if changes else chosen, crane, model, seed, hidden or {})
 
 
+@checked
 def replay(recording: Run | str | Path, crane: Crane, model: FrictionModel, *, learn: bool = True,
            params_file: str | Path | None = None) -> Replay:  # fmt: skip
     """A run, run file or bag through the nodes' own step: what would have been fed forward, and what was learned.
@@ -69,6 +72,7 @@ def replay(recording: Run | str | Path, crane: Crane, model: FrictionModel, *, l
     return Replay(replay_recording(recording, crane, model, settings, learn=learn), model)
 
 
+@checked
 def fit(data: str | Path | Runs, crane: Crane | None = None, *, motor: FrictionModel | str = "mj4",
         held_out: Runs = (), seed: int = 0) -> Fit:  # fmt: skip
     """A friction model from a supplier's table, or from logged steady tests.
@@ -118,6 +122,7 @@ def _fit_tests(tests: list[Any], crane: Crane, motor: FrictionModel | str, held_
     return Fit(winch_seed(found, crane, "fitted", {}), float(np.sqrt(np.mean(squares))), found)
 
 
+@checked
 def check(runs: Runs, crane: Crane, model: FrictionModel | None = None) -> Check:
     """Whether runs can be this crane's, and which mistake would explain why not; a model judges more sharply.
 
@@ -134,6 +139,7 @@ def check(runs: Runs, crane: Crane, model: FrictionModel | None = None) -> Check
     return Check(checked(_read(list(runs), crane), crane, model))
 
 
+@checked
 def gap(runs: Runs, crane: Crane, model: FrictionModel, *, holdout: float = 0.25, seed: int = 0) -> Gap:
     """Where runs and model disagree, which effect is missing, and the proof on runs that were locked away.
 

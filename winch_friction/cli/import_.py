@@ -112,8 +112,11 @@ def _show(log_map: LogMap) -> None:
     said = f"({form}), {log_map.time_confidence:.2f}: {log_map.time_because}"
     print(f"time <- {' + '.join(log_map.time_from)} {said}" if log_map.time_from else "time <- no column found")
     for name, entry in log_map.columns.items():
+        if entry.constant:
+            print(f"{name} <- {entry.constant}, a constant")
+            continue
         unit = ("-1 * " if entry.sign < 0 else "") + (entry.unit or "-")
-        print(f"{name} <- {entry.constant or entry.source} ({unit}), {entry.confidence:.2f}: {entry.because}")
+        print(f"{name} <- {entry.source} ({unit}), {entry.confidence:.2f}: {entry.because}")
 
 
 def _as_content(log_map: LogMap, problems: list[str], notes: tuple[str, ...], map_file: Path) -> dict[str, object]:

@@ -3,7 +3,7 @@
 import math
 from dataclasses import dataclass
 
-from winch_friction.compensation.config import CompensatorConfig, check_gains
+from winch_friction.compensation.config import CompensatorConfig, check_on_crane
 from winch_friction.compensation.feedforward import Feedforward
 from winch_friction.compensation.parts import CarryingPressure, DrumTorque, FrictionLaw, Needs, pressure_per_torque
 from winch_friction.compensation.safe_output import AGAINST_SPEED, SafeOutput
@@ -78,13 +78,13 @@ class FeedforwardCompensator:
         since: float = -math.inf,
     ) -> None:  # fmt: skip
         config = at_its_speeds(config or CompensatorConfig(), crane, "reversal_speed")
-        check_gains(config.gains)
+        self._ranges = ChannelRanges(crane)
+        check_on_crane(config, self._ranges.load)
         self.crane, self.seed, self.config = crane, completed(seed_model, crane), config
         self._seed_law = FrictionLaw(self.seed, config.gains)
         self._law = self._seed_law
         self._since = since  # s, the latest sample's stamp
         self._correct = SampleCorrector(crane, seed_model, since=since)
-        self._ranges = ChannelRanges(crane)
         self._predictor = SpeedPredictor(config.lead, config.acceleration_filter, config.jerk_filter)
         self._load = DrumTorque(self._correct.crane, config.load, config.load_filter)
         self._needs = self._needed()
@@ -125,11 +125,11 @@ class FeedforwardCompensator:
     def configure(self, config: CompensatorConfig) -> None:
         """Other settings from the next step on, without a bump; the model and the load estimate stay.
 
-        Raises `InputError`, and changes nothing, for gains for unknown terms, and for a slew limit that could not let
-        go in time of what is published.
+        Raises `InputError`, and changes nothing, for gains for unknown terms, a load that the crane cannot have, and a
+        slew limit that could not let go in time of what is published.
         """
         config = at_its_speeds(config, self.crane, "reversal_speed")
-        check_gains(config.gains)
+        check_on_crane(config, self._ranges.load)
         self.output.configure(self._absolute(config), config.slew_limit, config.ramp_time, config.max_age, config.lead)
         self.config = config
         self._seed_law, self._law = FrictionLaw(self.seed, config.gains), FrictionLaw(self.model, config.gains)

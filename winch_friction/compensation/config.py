@@ -111,8 +111,11 @@ class ReplayConfig(CompensatorConfig):
     )
 
 
-def check_gains(gains: Mapping[str, float]) -> None:
-    """Raise `InputError` for a gain whose name is no term at all."""
-    for name in gains:
+def check_on_crane(config: CompensatorConfig, heaviest: float) -> None:
+    """Raise `InputError` for a gain whose name is no term at all, and for a load above `heaviest` kg, which a load cell
+    of this crane could not show either."""
+    for name in config.gains:
         if name not in registered_terms():
             raise InputError(f"gains: there is no term '{name}'; terms are {', '.join(sorted(registered_terms()))}")
+    if config.load > heaviest:  # false for NaN
+        raise InputError(f"load {config.load:g} kg is more than this crane can have ({heaviest:g} kg); is it in kg?")

@@ -28,6 +28,7 @@ from winch_friction.importing.units import (
     is_share,
     usual_units,
 )
+from winch_friction.physics.channels import CM3_PER_REV
 from winch_friction.physics.errors import InputError, counted
 from winch_friction.physics.signals import column_unit
 from winch_friction.physics.winch.crane import Crane
@@ -217,7 +218,7 @@ def _settle_missing(draft: Draft, pooled: Log) -> None:
         left += f" ({listed(hollow)} without a number in it)" if hollow else ""
         draft.problems.append(
             f"{', '.join(lacking)}: no column found; {left}; "
-            f"name one by --set {_first_channel(lacking[0], draft.crane)}.from=COLUMN{_instead(lacking, free)}"
+            f"name one by --set {_first_channel(lacking[0], crane)}.from=COLUMN{_instead(lacking, free, crane)}"
         )
     for name, entry in draft.log_map.columns.items():
         channel = name.rpartition(".")[2]
@@ -228,9 +229,14 @@ def _settle_missing(draft: Draft, pooled: Log) -> None:
             )
 
 
-def _instead(lacking: Sequence[str], free: Sequence[str]) -> str:
-    """What to do where the log has something else in the place of what lacks: an angle, a difference of pressures."""
-    said = ""
+def _instead(lacking: Sequence[str], free: Sequence[str], crane: Crane | None) -> str:
+    """What to do where the log has something else in the place of what lacks: an angle, a difference of pressures, or
+    nothing, as of what never changes."""
+    swept = [each for each in lacking if each.endswith(".displacement")]
+    largest = (
+        f"{crane.max_displacement / CM3_PER_REV:.6g}" if crane is not None and crane.max_displacement else "NUMBER"
+    )
+    said = "".join(f"; motors of constant displacement: --set '{e}.constant={largest} cm^3/rev'" for e in swept)
     for name in free if any(each.endswith("displacement") for each in lacking) else ():
         readings = [
             (bare, unit) for bare, unit in header_readings(name) if unit and fitting_si_unit("shaft_angle", unit)

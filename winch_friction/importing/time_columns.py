@@ -20,6 +20,7 @@ _PARTS = 3  # columns of a time whose parts stand apart, at least; their names h
 _CLOCKS = (
     2e-3  # by which two clocks may differ: a quartz is a tenth of it off, no sensor tells so small an error of a rate
 )
+_FULL = 0.5  # of the rows
 _STEPS = 2.0  # a clock of whole seconds begins and ends within a step of another
 
 
@@ -176,9 +177,15 @@ def _with_fraction(
 
 def _time_candidates(log: Log) -> list[tuple[LogColumn, ...]]:
     single = [(c,) for c in log.columns]
-    texts = [c for c in log.columns if not c.numeric]
+    texts = [c for c in log.columns if not c.numeric and _is_full(c)]
     parts = calendar_columns(log.columns)
     return ([parts] if parts else []) + single + [(a, b) for a in texts for b in texts if a is not b]
+
+
+def _is_full(column: LogColumn) -> bool:
+    """Whether most rows of a text say something: half of a time does, a remark here and there is none."""
+    cells = () if column.text is None else column.text
+    return sum(cell is not None and bool(str(cell).strip()) for cell in cells) > _FULL * len(cells)
 
 
 def _steady(log: Log, columns: Sequence[LogColumn]) -> bool:

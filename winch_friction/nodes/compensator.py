@@ -11,6 +11,7 @@ from sensor_msgs.msg import FluidPressure, JointState
 from std_msgs.msg import String
 
 from winch_friction.compensation import CompensatorConfig, Feedforward
+from winch_friction.compensation.config import check_on_crane
 from winch_friction.nodes.base import ERROR, OK, WARN, Health, WinchNode
 from winch_friction.nodes.beside import Beside, read_terms
 from winch_friction.nodes.inputs import ROS, Inputs, pressure_message
@@ -25,6 +26,7 @@ from winch_friction.online.readiness import ANSWERING, make_ready
 from winch_friction.physics.errors import InputError, check, option
 from winch_friction.physics.friction import FrictionModel, registered_terms
 from winch_friction.physics.winch.crane import Crane
+from winch_friction.physics.winch.operating_point import ChannelRanges
 from winch_friction.records.model_file import load_model
 from winch_friction.records.topics import joint_state, stamp_header
 
@@ -208,7 +210,9 @@ class CompensatorNode(WinchNode):
         """Refuse what the output could not follow as well, before the parameter says that it is so."""
         super().check_settings(changes)
         if hasattr(self, "service"):
-            self.service.law.output.check_slew(self._config.read(self, changes).slew_limit)
+            config = self._config.read(self, changes)
+            check_on_crane(config, ChannelRanges(self.crane).load)
+            self.service.law.output.check_slew(config.slew_limit)
 
     def apply_settings(self) -> None:
         """Take over changed settings without a bump."""

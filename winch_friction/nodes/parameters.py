@@ -1,10 +1,12 @@
 """ROS parameters from option dataclasses: declared once, with description and range, and read back as one object."""
 
 import math
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import fields
 from typing import Any, Generic, TypeVar
 
+import yaml
 from rcl_interfaces.msg import FloatingPointRange, IntegerRange, ParameterDescriptor
 from rclpy.exceptions import (
     InvalidParameterTypeException,
@@ -86,6 +88,47 @@ def unknown_parameters(node: Any, settings: Iterable[OptionParameters[Any]]) -> 
         for name in sorted(_overrides(node))
         if not node.has_parameter(name) and not name.startswith("qos_overrides.")
     ]
+
+
+# -- the command line beside a parameter file
+def overruled(node: Any, arguments: Sequence[str]) -> list[str]:
+    """What is said of each `-p name:=value` of the command line that does not hold: rclpy takes it for a part of the
+    section `/**` of a parameter file, which the section that names the node overrules, without a word."""
+    held, told = _overrides(node), node.get_name()
+    return [
+        f"-p {rule} has no effect: a parameter file says {_shown(held[name].value)} in the section of this node; "
+        f"write -p {told}:{rule}"
+        for name, rule in _rules(arguments).items()
+        if name in held and not _means(rule.partition(":=")[2], held[name].value)
+    ]
+
+
+def _rules(arguments: Sequence[str]) -> dict[str, str]:
+    """The last `name:=value` of each parameter; those of a named node, `node:name:=value`, have names of their own."""
+    rules, ros = dict[str, str](), False
+    for each, after in zip(arguments, arguments[1:], strict=False):
+        ros = (ros or each == "--ros-args") and each != "--"
+        name, _, value = after.partition(":=")
+        if ros and each in ("-p", "--param") and value:
+            rules[name] = after
+    return rules
+
+
+def _means(text: str, value: Any) -> bool:
+    """Whether a parameter of the command line says this value."""
+    said: Any = text
+    try:
+        said = float(text)
+    except ValueError:
+        with suppress(yaml.YAMLError):
+            said = yaml.safe_load(text)
+    if isinstance(said, list):
+        return said == list(value) if isinstance(value, Sequence) else False
+    return bool(said == value) or text == str(value) or (said != said and value != value)
+
+
+def _shown(value: Any) -> str:
+    return str(list(value) if isinstance(value, (tuple, list)) else value)
 
 
 _QUALITIES = {

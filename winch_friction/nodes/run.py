@@ -12,6 +12,7 @@ from rclpy.utilities import get_default_context
 
 from winch_friction.nodes.console import Console
 from winch_friction.nodes.loop import Loop
+from winch_friction.nodes.parameters import overruled
 from winch_friction.physics.errors import InputError
 
 BAD_INPUT = 2
@@ -47,6 +48,8 @@ def _run(make: Callable[[], Any], arguments: Sequence[str] | None, ending: Endin
         _begin(given)
         node = make()
         node.told_to_end = lambda: ending.asked
+        for each in overruled(node, sys.argv if given is None else given):
+            node.get_logger().warning(each)
     except InputError as error:
         return _refuse(error)
     except rclpy.exceptions.ROSInterruptException:

@@ -1,6 +1,5 @@
-"""What is believed: a stamp that advances, a reading that may be, a sender with one voice, inputs that fit each other.
-
-The last are the command and the speed; the load and the drive's torque are in `doubt`.
+"""What is believed: a stamp that advances, a sender with one voice, pressures that can be a winch's, a command and a
+speed that fit each other; the load and the drive's torque are in `doubt`.
 """
 
 import math
@@ -9,20 +8,17 @@ from dataclasses import dataclass, field
 from enum import Enum
 from typing import Any
 
-import numpy as np
-
 from winch_friction.compensation.safe_output import AGAINST_SPEED, LONGEST_LAG
-from winch_friction.online.doubt import Doubt, LoadAgainstDrive, StandingReadings, WireAgainstSpeed, span
-from winch_friction.physics.channels import column_unit, out_of_range
-from winch_friction.physics.signals import FloatArray, Sample
-from winch_friction.physics.winch.crane import Crane
-from winch_friction.physics.winch.operating_point import SPEED_APART, SPEED_SHARE, Change, ChannelRanges
+from winch_friction.online.doubt import Doubt, LoadAgainstDrive, StandingReadings, Way, WireAgainstSpeed, span
+from winch_friction.physics.signals import Sample
+from winch_friction.physics.winch.crane import Crane, sample_drive_torque
+from winch_friction.physics.winch.operating_point import SPEED_APART, SPEED_SHARE, ChannelRanges
+from winch_friction.records.sample_stream import BACKWARD_JUMP
 from winch_friction.records.topics import Input, stamp_time
 
 # -- the stamp of a message
 SLOWEST = 0.1  # of the clock's pace; stamps that advance less than this stand still
 LONGEST_CATCH_UP = 1.0  # s of a pause that such stamps must make up for
-BACKWARD_JUMP = 1.0  # s; what falls back by less is late or repeated
 # messages, s by their stamps: then another time is a clock that was set, not a stray stamp. Which message sets it must
 # be found again by a replay, so that how late each came counts only against a burst: they came over CAME_OVER s, too
 CONFIRMED_BY, CONFIRMED_AFTER, CAME_OVER = 5, 0.08, 0.05
@@ -87,62 +83,6 @@ class StampWatch:
         if len(others) >= CONFIRMED_BY and advanced >= CONFIRMED_AFTER - ROUNDING and came >= CAME_OVER:
             return self._believe(stamp, now, Stamp.JUMP)
         return worth
-
-
-# -- a single reading
-UNKNOWN_AFTER = 1.0  # s without an accepted value: then the first one in range is believed, however far it is
-
-
-@dataclass
-class Plausibility:
-    """Judges single readings; keeps the last accepted one of each column."""
-
-    ranges: ChannelRanges
-    _last: dict[str, tuple[float, float]] = field(default_factory=dict, init=False)
-    _known: dict[str, tuple[float, float, Change | None]] = field(default_factory=dict, init=False)
-
-    def refusal(self, column: str, stamp: float, value: float) -> str:
-        """Why a reading is not believed, in a few words; empty when it is."""
-        if value != value:
-            return "no number"
-        known = self._known.get(column)
-        if known is None:
-            known = self._known[column] = (*self.ranges.range(column), self.ranges.change(column))
-        lower, upper, change = known
-        if not lower <= value <= upper:
-            return out_of_range(column, value, lower, upper)
-        if change is not None:
-            last = self._last.get(column)
-            if last is not None and self._too_fast(change, stamp - last[0], value - last[1]):
-                return f"{value:.4g}{_unit(column)} is {abs(value - last[1]):.3g} from the last"
-            self._last[column] = (stamp, value)
-        return ""
-
-    def believes(self, column: str, time: FloatArray, values: FloatArray) -> bool:
-        """Whether `refusal` would say nothing of any of these readings, (samples,), the first being the first."""
-        lower, upper = self.ranges.range(column)
-        if column in self._last or not ((values >= lower) & (values <= upper)).all():  # false for NaN
-            return False
-        change, passed = self.ranges.change(column), np.diff(time)
-        if change is None:
-            return True
-        most = change.at_once + change.per_second * np.maximum(passed, 0.0)
-        near = (passed > -UNKNOWN_AFTER) & (passed < UNKNOWN_AFTER)
-        return not bool((near & (np.abs(np.diff(values)) > most)).any())
-
-    def _too_fast(self, change: Change, passed: float, difference: float) -> bool:
-        if not -UNKNOWN_AFTER < passed < UNKNOWN_AFTER:
-            return False
-        return abs(difference) > change.at_once + change.per_second * max(passed, 0.0)
-
-    def forget(self) -> None:
-        """Another time begins."""
-        self._last.clear()
-
-
-def _unit(column: str) -> str:
-    unit = column_unit(column)
-    return "" if unit in (None, "1") else f" {unit}"
 
 
 # -- one sender
@@ -229,6 +169,65 @@ class Motions:
         return 0.0 <= now - self._seen < DOUBTED
 
 
+# -- the drive by itself
+# Pa; friction alone asks for some bar to hoist an empty hook, and loops are boosted by ten and more. 1000 bar in kPa
+# are less, and so is a dead sensor of which the atmosphere was taken off
+LEAST_PRESSURE = 1.5e5
+# of what the rated load asks for; zeros of transducers are a sixth of it, and so is what an acceleration that has only
+# begun leaves of an empty hook's inertia in the middle of both ways
+LEAST_PULL = 0.05
+PULL_TIME, PULL_KNOWN = 1.0, 5.0  # s until either counts; s of motion each way, half a wave of 10 s
+NONE_SAID = f"no pressure above {LEAST_PRESSURE / 1e5:g} bar while it hoists: not in Pa, or sensors without supply?"
+EXCHANGED_SAID = "the drive torque pulls the load down, hoisting and lowering: are pressure_a and pressure_b exchanged?"
+
+
+class DriveByItself:
+    """Whether a winch hoists at no pressure, or its motors pull the load down whichever way it turns; no load and no
+    model is asked. A crane without a load cell takes its load from the pressures: in bar where Pa are meant, without
+    supply or with exchanged ports they show none, and the friction of an empty hook went out for that of the load.
+    """
+
+    def __init__(self, crane: Crane, ranges: ChannelRanges) -> None:
+        self._crane, self._moving = crane, AGAINST_SPEED * crane.speed_scale  # rad/s
+        self._least = LEAST_PULL * 0.5 * ranges.load  # kg; the ranges leave twice the rated load
+        self._none, self._exchanged = Doubt(PULL_TIME), Doubt(PULL_TIME)
+        self._hoisting, self._lowering = Way(), Way()
+
+    @property
+    def pending(self) -> bool:
+        """Whether something is wrong, though it may not be said yet: one way may tell before both were seen."""
+        return self._none.pending or self._exchanged.pending or self._hoisting.drive < 0.0
+
+    def contradiction(self, sample: Sample, dt: float) -> str:
+        """What cannot be after `dt` s more, in words, '' for nothing."""
+        none = self._none.step(self._without_pressure(sample), dt)
+        exchanged = self._exchanged.step(self._pulls_down(sample, dt), dt)
+        if none:
+            return NONE_SAID
+        return EXCHANGED_SAID if exchanged else ""
+
+    def _without_pressure(self, sample: Sample) -> bool | None:
+        """None where it does not hoist: lowering, a pressure drop alone passes through nothing."""
+        shown = [p for each in sample.groups.values() for p in (each.pressure_a, each.pressure_b)]
+        if not shown or not sample.motor_speed > self._moving or any(map(math.isnan, shown)):
+            return None
+        return max(map(abs, shown)) < LEAST_PRESSURE
+
+    def _pulls_down(self, sample: Sample, dt: float) -> bool | None:
+        """Whether the middle of both ways, without friction and inertia, is plainly no load's; None of some motors:
+        those that are not shown may hold it."""
+        groups, crane = sample.groups, self._crane
+        whole = bool(groups) and crane.motor_total(tuple(groups)) >= max(crane.groups.values())
+        torque = sample_drive_torque(sample, crane) if whole else math.nan
+        if not abs(sample.motor_speed) > self._moving or not math.isfinite(torque):
+            return None
+        (self._hoisting if sample.motor_speed > 0.0 else self._lowering).step(0.0, torque, dt)
+        if min(self._hoisting.known, self._lowering.known) < PULL_KNOWN or not crane.drum.has(sample.wire_layer):
+            return None
+        least = crane.drum_torque(self._least, sample.wire_layer) / crane.gear_ratio  # N m
+        return 0.5 * (self._hoisting.drive + self._lowering.drive) < -least
+
+
 # -- the inputs beside each other
 SPEED_TIME = 0.5  # s that the command and the speed may be apart
 # to and fro: jumps of this share of the largest speed, so many, within this time
@@ -247,12 +246,12 @@ class Agreement:
 
     def forget(self) -> None:
         """Another time begins."""
-        self._time = self._now = math.nan
-        self._command = self._step = math.nan
+        self._time = self._now = self._command = self._step = math.nan
         self._jumps: list[float] = []
-        self._speeds, self._load = Doubt(SPEED_TIME), LoadAgainstDrive(self._crane, self._ranges)
-        self._still = StandingReadings(AGAINST_SPEED * self._crane.speed_scale)
-        self._wire = WireAgainstSpeed(self._crane, self._ranges)
+        crane, ranges = self._crane, self._ranges
+        self._speeds, self._load = Doubt(SPEED_TIME), LoadAgainstDrive(crane, ranges)
+        standing = StandingReadings(AGAINST_SPEED * crane.speed_scale)
+        self._watches = self._load, standing, WireAgainstSpeed(crane, ranges), DriveByItself(crane, ranges)
         # messages in batches: a command that is right in one sample of each is none
         self._turns = Doubt(LONGEST_LAG, forgiven=LONGEST_LAG)
 
@@ -268,7 +267,7 @@ class Agreement:
         found = {
             "speed_reference turns against motor_speed": self._turns.step(self._turns_against(sample), dt),
             "speed_reference contradicts motor_speed": self._speeds.step(self._speeds_differ(sample), dt),
-            **{each.contradiction(sample, dt): True for each in (self._load, self._still, self._wire)},
+            **{each.contradiction(sample, dt): True for each in self._watches},
             "speed_reference jumps to and fro: two publishers?": self._chatters(sample),
         }
         return tuple(name for name, stands in found.items() if name and stands)

@@ -197,7 +197,7 @@ MEMORY, LEAST_KNOWN = 20.0, 5.0  # s of motion each way: some waves, and half of
 
 
 @dataclass
-class _Way:
+class Way:
     """Means over the motion one way, of the shown load's torque and of the drive's, N m; `known` s of it."""
 
     load: float = 0.0
@@ -228,7 +228,7 @@ class LoadAgainstDrive:
         self._rated, self._moving = 0.5 * ranges.load, AGAINST_SPEED * crane.speed_scale  # kg, rad/s
         self._largest = ranges.load + MOST_FRICTION * self._rated  # kg
         self._at_once, self._both_ways = Doubt(TORQUE_TIME), Doubt(TORQUE_TIME)
-        self._hoisting, self._lowering = _Way(), _Way()
+        self._hoisting, self._lowering = Way(), Way()
         self._by = ""  # what showed the load last
 
     def contradiction(self, sample: Sample, dt: float) -> str:
@@ -236,7 +236,7 @@ class LoadAgainstDrive:
         at_once = both_ways = None
         if math.isnan(self._load(sample)):  # nothing is shown that could be wrong, whatever was before
             at_once = both_ways = False
-            self._hoisting, self._lowering = _Way(), _Way()
+            self._hoisting, self._lowering = Way(), Way()
         else:
             self._by = shown_by(sample)
             if self._tells(sample):

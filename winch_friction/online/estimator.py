@@ -9,6 +9,7 @@ from winch_friction.compensation.safe_output import AGAINST_SPEED
 from winch_friction.estimation import Estimate, EstimatorConfig, FrictionEstimator
 from winch_friction.estimation.answers import ParameterEstimate
 from winch_friction.estimation.sample import absent
+from winch_friction.online.agreement import DriveByItself
 from winch_friction.online.before_doubt import BeforeDoubt
 from winch_friction.online.compensator import LEARNED_AT
 from winch_friction.online.doubt import LoadAgainstDrive, StandingReadings, WireAgainstSpeed, span
@@ -59,6 +60,7 @@ class EstimatorService:
         self._load = LoadAgainstDrive(crane, self.inputs.ranges)
         self._still = StandingReadings(AGAINST_SPEED * crane.speed_scale)
         self._wire = WireAgainstSpeed(crane, self.inputs.ranges)
+        self._drive = DriveByItself(crane, self.inputs.ranges)
 
     def take(
         self, source: Input, message: Any, receipt: float, now: float, sent: float | None = None
@@ -100,7 +102,7 @@ class EstimatorService:
         """A load that is far off is seen without the filter, which would take in none of its samples; and so is a gain
         that changed, which makes the filter reject what tells it."""
         passed = span(self._seen, sample.time)
-        watched = [each.contradiction(sample, passed) for each in (self._load, self._still, self._wire)]
+        watched = [each.contradiction(sample, passed) for each in (self._load, self._still, self._wire, self._drive)]
         lost = next(filter(None, watched), "")
         self._seen = sample.time
         gain = ""
@@ -117,7 +119,9 @@ class EstimatorService:
     @property
     def _pending(self) -> bool:
         """Whether a doubt stands, or may come to."""
-        return bool(self.contradiction) or any(each.pending for each in (self._load, self._balance, self._gain))
+        return bool(self.contradiction) or any(
+            each.pending for each in (self._load, self._drive, self._balance, self._gain)
+        )
 
     def model_due(self, now: float) -> FrictionModel | None:
         """The learned model when it is time to publish it: every `model_period` s of the samples, and no faster than

@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field
 from typing import Any
 
-from winch_friction.online.agreement import Motions, Plausibility, Stamp, StampWatch, Voices
+from winch_friction.online.agreement import Motions, Stamp, StampWatch, Voices
 from winch_friction.physics.channels import GROUP_CHANNELS, SAMPLE_SCALARS
 from winch_friction.physics.errors import check, option
 from winch_friction.physics.signals import NAN, Run, Sample
@@ -18,11 +18,12 @@ from winch_friction.physics.winch.operating_point import ChannelRanges
 from winch_friction.records.sample_stream import (
     SIMULTANEOUS,
     InputHold,
+    Plausibility,
     SampleStream,
     group_columns,
     shown_columns,
     without_holes,
-)
+)  # fmt: skip
 from winch_friction.records.topics import Input, TopicMap, stamp_time
 
 # -- how time is judged
@@ -71,10 +72,9 @@ class ServiceOptions:
 
 # -- all of them
 SILENT = "motor_speed ('inputs' says why)"  # what is missing where no speed comes
-TWO_VOICES = "two values under one stamp"
+TWO_VOICES, LATE = "two values under one stamp", "stamp before that of the last message"
 MOTION = "motor_speed", "speed_reference"
 TWO_MOTIONS = "two motions in turn: does a recording or a simulator send beside the machine?"
-LATE = "stamp before that of the last message"
 
 
 @dataclass

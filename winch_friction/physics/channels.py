@@ -179,18 +179,23 @@ def factor_to_si(unit: str, expected: str, where: str = "") -> float:
     )
 
 
-def out_of_range(column: str, value: float, lower: float, upper: float) -> str:
+def in_unit(column: str, value: float) -> str:
+    """A value of a run's column with its SI unit, if it has one."""
+    unit = column_unit(column)
+    return f"{value:.4g}" if unit in (None, "1") else f"{value:.4g} {unit}"
+
+
+def outside(column: str, value: float, lower: float, upper: float) -> str:
     """What is said of a value, SI, outside a range; asks for the unit in which people read the column if it is inside
     in that.
 
-    >>> out_of_range("motor_speed", 1480.0, -300.0, 300.0)
+    >>> outside("motor_speed", 1480.0, -300.0, 300.0)
     '1480 rad/s is outside -300 ... 300 rad/s: sent in rpm? Inputs are in rad/s'
     """
-    own, display = column_unit(column), display_unit(column)
-    unit = "" if own in (None, "1") else f" {own}"
-    said = f"{value:.4g}{unit} is outside {lower:.4g} ... {upper:.4g}{unit}"
+    unit, display = column_unit(column), display_unit(column)
+    said = f"{in_unit(column, value)} is outside {lower:.4g} ... {in_unit(column, upper)}"
     factor = _CONVERSIONS.get(display or "", ("", 1.0))[1]
-    return f"{said}: sent in {display}? Inputs are in{unit}" if lower <= value * factor <= upper else said
+    return f"{said}: sent in {display}? Inputs are in {unit}" if lower <= value * factor <= upper else said
 
 
 def accepted_units(si_unit: str) -> list[str]:

@@ -11,6 +11,7 @@ from winch_friction.records.strict_yaml import read_yaml
 from winch_friction.records.topics import DISPLACEMENT_UNITS, PRESSURE_REFERENCES, TopicMap, crane_topics
 
 NODES = ("compensator", "estimator")  # that have inputs, by the names of their sections in a parameter file
+EVERY_NODE = ("**", "*")  # what a section of all nodes ends with
 
 
 @dataclass(frozen=True)
@@ -54,12 +55,12 @@ class InputMapping:
 
 
 def parameters_of(content: Any, node: str, where: str) -> dict[str, Any]:
-    """Parameters of a node in a ROS parameter file: those of every node (`/**`) and its own."""
+    """Parameters of a node in a ROS parameter file: those of every node (`/**`, `/**/*`) and its own."""
     if not isinstance(content, Mapping):
         raise InputError(f"{where}: not a ROS parameter file: expected node names with ros__parameters")
     merged: dict[str, Any] = {}
     for name, section in content.items():
-        if str(name).rsplit("/", 1)[-1] in ("**", node):
+        if str(name).rsplit("/", 1)[-1] in (*EVERY_NODE, node):
             if not isinstance(section, Mapping) or "ros__parameters" not in section:
                 raise InputError(f"{where}: {name} has no ros__parameters; is this a ROS parameter file?")
             own = section["ros__parameters"] or {}
@@ -72,7 +73,7 @@ def parameters_of(content: Any, node: str, where: str) -> dict[str, Any]:
 def refuse_without_nodes(content: Any, where: str) -> None:
     """Raise `InputError` for a file none of whose sections is one of `NODES`: it would set nothing."""
     found = [str(name) for name in content] if isinstance(content, Mapping) else []
-    if not {name.rsplit("/", 1)[-1] for name in found} & {"**", *NODES}:
+    if not {name.rsplit("/", 1)[-1] for name in found} & {*EVERY_NODE, *NODES}:
         raise InputError(
             f"{where}: no parameters of {' or '.join(NODES)}: expected one of these names (or /**) with "
             f"ros__parameters below; found {', '.join(found[:6]) or 'no names'}"

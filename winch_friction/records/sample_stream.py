@@ -13,10 +13,14 @@ from collections import Counter, deque
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import lru_cache
+from operator import itemgetter
 from typing import Any
 
-from winch_friction.physics.channels import GROUP_CHANNELS, SAMPLE_SCALARS, SLOW_INPUTS, limits_of
-from winch_friction.physics.signals import GroupSample, Run, Sample
+import numpy as np
+
+from winch_friction.physics.channels import GROUP_CHANNELS, SAMPLE_SCALARS, SLOW_INPUTS, in_unit, limits_of, outside
+from winch_friction.physics.signals import FloatArray, GroupSample, Run, Sample
+from winch_friction.physics.winch.operating_point import Change, ChannelRanges
 from winch_friction.records.topics import Input, TopicMap, stamp_time
 
 # -- holding
@@ -119,7 +123,7 @@ class InputHold:
             return NOTHING
         latest = time + SIMULTANEOUS
         # the last one, unless a node that lags behind finds later ones waiting already
-        place = len(held) if held[-1][0] <= latest else bisect_right(held, latest, key=_stamp)
+        place = len(held) if held[-1][0] <= latest else bisect_right(held, latest, key=itemgetter(0))
         return held[place - 1] if place else NOTHING
 
     def limit(self, column: str) -> float:
@@ -153,8 +157,54 @@ def without_holes(run: Run) -> bool:
     )
 
 
-def _stamp(held: tuple[float, float]) -> float:
-    return held[0]
+# -- what of a reading is believed
+UNKNOWN_AFTER = 1.0  # s without an accepted value: then the first one in range is believed, however far it is
+
+
+@dataclass
+class Plausibility:
+    """Judges single readings; keeps the last accepted one of each column."""
+
+    ranges: ChannelRanges
+    _last: dict[str, tuple[float, float]] = field(default_factory=dict, init=False)
+    _known: dict[str, tuple[float, float, Change | None]] = field(default_factory=dict, init=False)
+
+    def refusal(self, column: str, stamp: float, value: float) -> str:
+        """Why a reading is not believed, in a few words; empty when it is."""
+        if value != value:
+            return "no number"
+        if column not in self._known:
+            self._known[column] = (*self.ranges.range(column), self.ranges.change(column))
+        lower, upper, change = self._known[column]
+        if not lower <= value <= upper:
+            return outside(column, value, lower, upper)
+        if change is not None:
+            last = self._last.get(column)
+            if last is not None and self._too_fast(change, stamp - last[0], value - last[1]):
+                return f"{in_unit(column, value)} is {abs(value - last[1]):.3g} from the last"
+            self._last[column] = (stamp, value)
+        return ""
+
+    def believes(self, column: str, time: FloatArray, values: FloatArray) -> bool:
+        """Whether `refusal` would say nothing of any of these readings, (samples,), the first being the first."""
+        lower, upper = self.ranges.range(column)
+        if column in self._last or not ((values >= lower) & (values <= upper)).all():  # false for NaN
+            return False
+        change, passed = self.ranges.change(column), np.diff(time)
+        if change is None:
+            return True
+        most = change.at_once + change.per_second * np.maximum(passed, 0.0)
+        near = (passed > -UNKNOWN_AFTER) & (passed < UNKNOWN_AFTER)
+        return not bool((near & (np.abs(np.diff(values)) > most)).any())
+
+    def _too_fast(self, change: Change, passed: float, difference: float) -> bool:
+        if not -UNKNOWN_AFTER < passed < UNKNOWN_AFTER:
+            return False
+        return abs(difference) > change.at_once + change.per_second * max(passed, 0.0)
+
+    def forget(self) -> None:
+        """Another time begins."""
+        self._last.clear()
 
 
 # -- from messages to samples
@@ -162,10 +212,6 @@ def _stamp(held: tuple[float, float]) -> float:
 # was paused (`DEPTH`) is nearer
 OTHER_CLOCK = 10.0
 BACKWARD_JUMP = 1.0  # s; stamps that fall behind by more are a new recording, not a late message
-
-
-def _any(column: str, stamp: float, value: float) -> bool:
-    return True
 
 
 class SampleStream:
@@ -178,13 +224,9 @@ class SampleStream:
     """
 
     def __init__(
-        self,
-        topics: TopicMap,
-        hold: InputHold,
-        on_jump: Callable[[], None] = lambda: None,
-        admit: Callable[[str, float, float], bool] = _any,
-        on_held: Callable[[str], None] = lambda _: None,
-    ) -> None:
+        self, topics: TopicMap, hold: InputHold, on_jump: Callable[[], None] = lambda: None,
+        admit: Callable[[str, float, float], bool] = lambda *_: True, on_held: Callable[[str], None] = lambda _: None,
+    ) -> None:  # fmt: skip
         self.topics, self.hold = topics, hold
         self._on_jump, self._admit, self._on_held = on_jump, admit, on_held
         self.counts: Counter[str] = Counter()
@@ -234,18 +276,17 @@ class SampleStream:
 
     def put(self, source: Input, stamp: float, message: Any) -> bool:
         """Hold what a message with this stamp in s says; whether its first channel was believed."""
-        taken, first = False, True
+        taken: bool | None = None
         for channel, value in source.decode(message).items():
             possible = self._admit(channel, stamp, value) and self._within_stroke(channel, value)
             accepted = possible and self.hold.put(channel, stamp, value)
             if accepted:
                 self._on_held(channel)
-            if first:
-                taken, first = accepted, False
+            taken = accepted if taken is None else taken
         self.counts[source.topic] += 1
         if not taken:
             self.rejected[source.topic] += 1
-        return taken
+        return bool(taken)
 
     def _within_stroke(self, column: str, value: float) -> bool:
         """Whether it is no displacement that the motors do not have, as far as those are known."""

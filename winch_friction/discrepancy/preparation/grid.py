@@ -192,7 +192,7 @@ def filtered(numerator: FloatArray, denominator: FloatArray, x: FloatArray) -> F
     right = numerator[0] * x
     for i, weight in enumerate(numerator[1:], 1):
         right[i:] += weight * x[:-i]
-    return recursive(denominator[1:], right)
+    return recursive(list(denominator[1:]), right)
 
 
 def recursive(before: Sequence[FloatArray | float], driven: FloatArray) -> FloatArray:
@@ -202,7 +202,7 @@ def recursive(before: Sequence[FloatArray | float], driven: FloatArray) -> Float
     """
     bands = np.zeros((len(driven), len(before) + 1)).T
     for i, weight in enumerate(before, 1):
-        bands[i, : len(driven) - i] = weight if np.ndim(weight) == 0 else weight[i:]
+        bands[i, : len(driven) - i] = weight[i:] if isinstance(weight, np.ndarray) else weight
     return np.asarray(dtbsv(len(before), bands, driven, lower=1, diag=1, overwrite_x=1))
 
 

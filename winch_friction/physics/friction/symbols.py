@@ -84,6 +84,14 @@ rho = _BY_NAME["density"]
 mu = _BY_NAME["viscosity"]
 gear_ratio = _BY_NAME["gear_ratio"]
 
+
+def __getattr__(name: str) -> sp.Symbol:
+    """A signal by the name that tables and models call it by: `speed_magnitude` is `w`."""
+    if name in _BY_NAME:
+        return _BY_NAME[name]
+    raise AttributeError(f"there is no signal '{name}'; an equation may read {', '.join(_BY_NAME)}")
+
+
 ALL_OF_LOAD = 1.0  # most that one shaft loses per drum torque: all of it, where one motor turns the drum without a gear
 
 GROUP_SYMBOLS = frozenset(signal.symbol for signal in GROUP_SIGNALS)

@@ -4,6 +4,7 @@ A name in a model file stands for exactly one declared term, by the registry.
 """
 
 import importlib.util
+import traceback
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -242,6 +243,8 @@ def _added_by(path: Path) -> tuple[Term, ...]:
         added = tuple(_TERMS[name] for name in _TERMS if name not in before)
         if not added:
             raise InputError(f"{path}: declares no term; it needs register(Term(...))")
+        for idle in ((t.name, p.name) for t in added for p in t.parameters if p.symbol not in t.free_symbols):
+            raise InputError(f"{path}: term '{idle[0]}': its parameter {idle[1]} stands in no equation of it")
     except InputError:
         _forget_all_but(before)
         raise
@@ -255,9 +258,17 @@ def _run(path: Path) -> None:
     try:
         spec.loader.exec_module(importlib.util.module_from_spec(spec))
     except InputError as error:
-        raise InputError(f"{path}: {error}") from error
+        raise InputError(f"{path}: {error}{_line(error, path)}") from error
     except (Exception, SystemExit) as error:  # a script that ends would end the verb, as if all were done
-        raise InputError(f"{path}: {type(error).__name__}: {' '.join(str(error).split())}") from error
+        said = " ".join(str(error).split())
+        raise InputError(f"{path}: {type(error).__name__}: {said}{_line(error, path)}") from error
+
+
+def _line(error: BaseException, path: Path) -> str:
+    """Which line of a file raised, in words; an error of its syntax says so itself."""
+    steps, own = traceback.extract_tb(error.__traceback__), path.resolve()
+    lines = [each.lineno for each in steps if Path(each.filename).resolve() == own]
+    return f" (line {lines[-1]})" if lines else ""
 
 
 def _forget_all_but(names: set[str]) -> None:

@@ -1,0 +1,83 @@
+"""Pressures that cannot be a winch's, where no load cell contradicts them."""
+
+import math
+from collections.abc import Callable, Iterator
+
+import pytest
+from sea import CRANE, PERIOD, SEED
+
+from winch_friction.estimation.config import EstimatorConfig
+from winch_friction.online.agreement import EXCHANGED_SAID, NONE_SAID
+from winch_friction.online.compensator import CompensatorService
+from winch_friction.online.estimator import EstimatorService
+from winch_friction.physics.signals import GroupSample, Sample
+from winch_friction.records.topics import crane_topics
+
+FULL, BOOST = CRANE.max_displacement, 25e5  # m3/rad, Pa
+Sensors = Callable[[float, float], tuple[float, float]]  # Pa at the ports -> what is shown
+NORMAL = crane_topics(CRANE, ("main",))
+
+
+def sea(seconds: float, sensors: Sensors, load: float = 15e3, friction: float = 200.0) -> Iterator[Sample]:
+    """All motors hoist and lower `load` kg in waves of 10 s, with `friction` N m, no load cell."""
+    for k in range(round(seconds / PERIOD)):
+        phase = 2.0 * math.pi * k * PERIOD / 10.0
+        speed, rising = 150.0 * math.sin(phase), 150.0 * 0.2 * math.pi * math.cos(phase)
+        torque = CRANE.drum_torque(load) / CRANE.gear_ratio + CRANE.inertia * rising + math.copysign(friction, speed)
+        shown = sensors(torque / (11.0 * FULL) + BOOST, BOOST + 1e3 * math.sin(k))
+        yield Sample(k * PERIOD, speed, speed, {"main": GroupSample(*shown, FULL)})
+
+
+def first_said(samples: Iterator[Sample], topics=NORMAL) -> tuple[float, str]:
+    """When the compensator doubts them, s, and why; NaN for never."""
+    service = CompensatorService(CRANE, SEED, topics)
+    for sample in samples:
+        service.take_row(sample)
+        if service.contradictions:
+            return sample.time, "; ".join(service.contradictions)
+    return math.nan, ""
+
+
+@pytest.mark.parametrize("unit", [1e5, 1e6, 1e3, 6894.76, math.inf], ids=["bar", "MPa", "kPa", "psi", "no supply"])
+def test_pressures_in_another_unit_are_no_pressures_of_a_winch_that_hoists(unit):
+    """The friction of an empty hook went out for that of 15 t, `valid`, and the state was `active`."""
+    when, why = first_said(sea(4.0, lambda a, b: (a / unit, b / unit)))
+    assert why == NONE_SAID
+    assert when == pytest.approx(1.2, abs=0.2)
+
+
+def test_exchanged_ports_would_pull_the_load_down():
+    when, why = first_said(sea(30.0, lambda a, b: (b, a)))
+    assert why == EXCHANGED_SAID
+    assert 11.0 < when < 18.0  # each way was seen for 5 s
+
+
+@pytest.mark.parametrize(
+    ("load", "friction", "sensors"),
+    [
+        (0.0, 60.0, lambda a, b: (a, b)),  # an empty hook, little friction
+        (4.5e3, 200.0, lambda a, b: (a - b, 0.0)),  # the drop alone, about nothing while it lowers
+        (3e3, 60.0, lambda a, b: (b, a)),  # exchanged, of hardly any load: inertia and zeros could be as much
+        (15e3, 200.0, lambda a, b: (math.nan, b)),  # what is missing is said elsewhere
+    ],
+)
+def test_what_a_winch_may_show_is_believed(load, friction, sensors):
+    assert not first_said(sea(18.0, sensors, load, friction))[1]
+
+
+def test_one_of_two_groups_may_pull_the_load_down():
+    """The passive motors hold it, and are not logged."""
+    active = [
+        Sample(each.time, each.motor_speed, each.speed_reference, {"active": each.groups["main"]})
+        for each in sea(18.0, lambda a, b: (b, a), 60e3)
+    ]
+    assert not first_said(iter(active), crane_topics(CRANE, ("active",)))[1]
+
+
+def test_an_estimator_learns_nothing_of_them_nor_keeps_what_it_learned_before_it_was_sure():
+    service = EstimatorService(CRANE, SEED, NORMAL, EstimatorConfig())
+    for sample in sea(18.0, lambda a, b: (b, a)):
+        service.take_row(sample)
+    assert service.contradiction == EXCHANGED_SAID
+    assert service.model_due(1e9).values == SEED.values
+    assert service.snapshot() == EstimatorService(CRANE, SEED, NORMAL).snapshot()

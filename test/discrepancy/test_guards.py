@@ -387,22 +387,42 @@ def test_a_name_that_the_locked_runs_do_not_need_is_dropped(more, law, stay):
     assert [each.slot.name for each in proven.search.selection.found] == stay
 
 
+@pytest.mark.parametrize("law", ["", "a power"])  # of which nothing but mending is asked
 @pytest.mark.parametrize(("name", "stay"), [("other", 1), ("wave", 2)])
-def test_a_small_second_name_is_dropped_and_a_second_law_of_the_same_cause_is_not(name, stay):
+def test_a_small_second_name_is_dropped_and_a_second_law_of_the_same_cause_is_not(name, stay, law):
     cross = crossfit(2.0 * WAVE + OTHER + noise())
-    slots = (SLOTS[0], replace(SLOTS[1], name=name, law="bent"))
+    slots = (replace(SLOTS[0], law=law), replace(SLOTS[1], name=name, law="bent"))
     found = tuple(Finding(slot, (), 0.0, 0.1, 1.0) for slot in slots)
     search = _Search(cross, Selection(cross.explain(()), cross.explain(slots), found))
 
     def trial_of(own):
         """The second takes less than a hundredth of what the first does off the square of the locked gap."""
         laws = [slot.law for slot in own.selection.final.slots]
-        left = 3.0 * WAVE * ("" not in laws) + 0.25 * OTHER * ("bent" not in laws) + noise(1)
+        left = 3.0 * WAVE * (law not in laws) + 0.25 * OTHER * ("bent" not in laws) + noise(1)
         return Trial(own, None, None, replace(side(3.0 * WAVE + noise(), left), least_noise=0.1))
 
     nameless = trial_of(replace(search, selection=replace(search.selection, final=cross.explain(()), found=())))
     proven = each_proven(trial_of(search), nameless, trial_of, np.random.default_rng(0))
     assert len(proven.search.selection.final.slots) == stay
+
+
+def test_a_law_whose_companion_is_dropped_has_the_shape_that_it_needs_alone():
+    """The shape that was chosen beside the companion leaves of the training runs what no other law leaves, and fell."""
+    alone = WAVE + OTHER
+    slots = (*SLOTS, replace(SLOTS[1], label="alone", columns=(3,)))
+    cross = crossfit(3.0 * alone + noise(), slots=slots, more=alone)
+    found = tuple(Finding(slot, (), 0.0, 0.1, 1.0) for slot in SLOTS)
+    search = _Search(cross, Selection(cross.explain(()), cross.explain(SLOTS), found))
+
+    def trial_of(own):
+        """The locked runs need the second name alone, whatever its shape: the file is fitted anew."""
+        left = 3.0 * WAVE * ("other" not in own.selection.final.names) + noise(1)
+        return Trial(own, None, None, replace(side(3.0 * WAVE + noise(), left), least_noise=0.1))
+
+    nameless = trial_of(replace(search, selection=replace(search.selection, final=cross.explain(()), found=())))
+    proven = each_proven(trial_of(search), nameless, trial_of, np.random.default_rng(0))
+    assert [slot.label for slot in proven.search.selection.final.slots] == ["alone"]
+    assert [each.slot.label for each in proven.search.selection.found] == ["alone"]
 
 
 @pytest.mark.parametrize("alone", [0.0, 2.0])  # what the other leaves of the locked runs by itself

@@ -9,7 +9,7 @@ from winch_friction.discrepancy.answer import AMBIGUOUS, MISSING
 from winch_friction.discrepancy.candidates.signals import DELAY
 from winch_friction.discrepancy.engine.blocks import Slot
 from winch_friction.discrepancy.engine.chance import least_part
-from winch_friction.discrepancy.engine.crossfit import on_their_own
+from winch_friction.discrepancy.engine.crossfit import on_their_own, reshaped
 from winch_friction.discrepancy.engine.selection import Selection, with_fewer
 from winch_friction.discrepancy.expansion import Expansion, meet
 from winch_friction.discrepancy.proof import Trial, adds, at_the_floor, far_off, is_minor, leaves_too_much, read_back
@@ -54,16 +54,17 @@ def each_proven(full: Trial, refit: Trial, trial_of: Callable[[Search], Trial], 
             continue
         without = trial_of(_without(search, slot))
         mends = any(each.law for each in without.search.selection.final.slots) and at_the_floor(without.holdout)
-        # a second law of a cause is no second name: what it takes may be little beside what the first one does
+        minor = is_minor(refit.holdout, without.holdout, full.holdout) and not leaves_too_much(without.holdout)
+        # a second law of a cause is no second name: it is there to mend the first one, and may take little beside it
         same = slot.name in without.search.selection.final.names
-        minor = not same and is_minor(refit.holdout, without.holdout, full.holdout)
-        minor = minor and not leaves_too_much(without.holdout)
-        inexact = (mends or minor) and not _by_another_signal(slot, without, full, rng)
+        inexact = not same and (mends or minor) and not _by_another_signal(slot, without, full, rng)
         if inexact or not adds(without.holdout, full.holdout, rng):
             full = without
             dropped.append(slot)
     if dropped:
-        full = replace(full, search=_judged_anew(full.search, rng))
+        anew = _judged_anew(full.search, rng)
+        same = anew.selection.final.slots == full.search.selection.final.slots
+        full = replace(full, search=anew) if same else trial_of(anew)
         full = _with_those_as_good_alone(full, every, dropped, trial_of, rng)
     return full
 
@@ -136,8 +137,10 @@ def _without(search: Search, slot: Slot) -> Search:
 
 
 def _judged_anew(search: Search, rng: np.random.Generator) -> Search:
-    """The search with the rivals that its names have now that others are gone."""
-    return _of(search, with_fewer(search.cross, search.selection, search.selection.final.slots, rng))
+    """The search with the shapes and the rivals that its names have now that others are gone: a shape that was chosen
+    beside a second law of its cause leaves much without it, which the file, fitted anew, does not."""
+    slots = reshaped(search.cross, search.selection.final.slots)
+    return _of(search, with_fewer(search.cross, search.selection, slots, rng))
 
 
 def _of(search: Search, selection: Selection) -> Search:

@@ -203,6 +203,18 @@ def fitted(cross: CrossFit, rest: Sequence[Slot], taken: Container[str], by_part
     return [slot for _, slot in best.values()]
 
 
+def reshaped(cross: CrossFit, slots: Sequence[Slot]) -> tuple[Slot, ...]:
+    """The same laws, each in the shape that fits the training runs best beside the others: the one that a law had may
+    have been chosen beside an effect that is gone."""
+    shaped = list(slots)
+    for k, own in enumerate(slots):
+        rest = [*shaped[:k], *shaped[k + 1 :]]
+        law = own.name, own.law, own.part
+        alike = [each for each in cross.problem.slots if (each.name, each.law, each.part) == law]
+        shaped[k] = min((own, *alike), key=lambda each: cross.train_loss((*rest, each))[0])
+    return tuple(shaped)
+
+
 def heads(cross: CrossFit, before: float, trials: Sequence[Explanation]) -> list[Explanation]:
     """The best member of each family by held-out loss; a free one only where no law does nearly as well."""
     families: dict[str, list[Explanation]] = {}

@@ -85,3 +85,9 @@ def test_a_model_without_std_says_what_is_assumed():
     zero = bare.with_values({"C3": 0.0})
     typical = {p.name: p.typical for p in zero.parameters}["C3"]
     assert with_stated_std(zero)[0].std[zero.parameter_names.index("C3")] == pytest.approx(0.02 * typical)
+
+
+@pytest.mark.parametrize("asked", [lambda m: m.value("K99"), lambda m: m.with_values({"K1": 0.0, "K99": 1.0})])
+def test_a_parameter_that_the_model_does_not_have_is_refused_with_those_that_it_has(asked):
+    with pytest.raises(InputError, match="^model 'a6vm215' has no parameter K99; it has K1, K2, K3, K4, K5$"):
+        asked(load_model("a6vm215"))

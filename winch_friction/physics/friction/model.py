@@ -1,10 +1,8 @@
-"""The friction model: a list of named terms with parameter values, bounds and covariance.
-
-And which crane it belongs to, and what it assumes where it does not say how sure it is.
-"""
+"""The friction model: named terms with parameter values, bounds and covariance; which crane it belongs to, and what it
+assumes where it does not say how sure it is."""
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -72,9 +70,8 @@ class FrictionModel:
         for name, value in zip(names, self.values, strict=True):
             lower, upper = self.bounds_of(name)
             if not lower <= value <= upper:
-                raise InputError(
-                    f"model '{self.name}': parameter {name} = {value:g} is outside {lower:g} ... {upper:g}"
-                )
+                said = f"parameter {name} = {value:g} is outside {lower:g} ... {upper:g}"
+                raise InputError(f"model '{self.name}': {said}")
         if self.covariance is not None:
             _check_covariance(self.name, self.covariance, len(names))
 
@@ -100,7 +97,8 @@ class FrictionModel:
         return tuple(self.bounds.get(parameter, declared[parameter]))  # type: ignore[return-value]
 
     def value(self, parameter: str) -> float:
-        """Value of a parameter, SI."""
+        """Value of a parameter, SI; raises `InputError` for one that the model does not have."""
+        self._refuse_unknown([parameter])
         return self.as_dict()[parameter]
 
     def as_dict(self) -> dict[str, float]:
@@ -134,11 +132,14 @@ class FrictionModel:
     def with_values(self, values: Mapping[str, float] | Sequence[float]) -> "FrictionModel":
         """The same model with other values: all of them, or some by name."""
         if isinstance(values, Mapping):
-            unknown = set(values) - set(self.parameter_names)
-            if unknown:
-                raise InputError(f"model '{self.name}' has no parameter {sorted(unknown)}")
+            self._refuse_unknown(values)
             values = [values.get(name, old) for name, old in self.as_dict().items()]
         return replace(self, values=tuple(float(value) for value in values))
+
+    def _refuse_unknown(self, names: Iterable[str]) -> None:
+        if unknown := sorted(set(names) - set(self.parameter_names)):
+            has = ", ".join(self.parameter_names)
+            raise InputError(f"model '{self.name}' has no parameter {', '.join(unknown)}; it has {has}")
 
     def with_covariance(self, covariance: FloatArray | None) -> "FrictionModel":
         """The same model with another covariance."""

@@ -3,13 +3,14 @@
 import numpy as np
 from scipy.signal import lfilter, lfilter_zi
 
-from winch_friction.discrepancy.preparation.grid import filtered, lagged
+from winch_friction.discrepancy.preparation.grid import lagged, recursive
 
 
 def test_filter_is_scipys_lfilter():
     x = np.cumsum(np.random.default_rng(1).normal(size=5000))
     numerator, denominator = np.array([0.1, 0.05, 0.02]), np.array([1.0, -1.7, 0.8])
-    np.testing.assert_allclose(filtered(numerator, denominator, x), lfilter(numerator, denominator, x), atol=1e-10)
+    driven = lfilter(numerator, [1.0], x)
+    np.testing.assert_allclose(recursive(denominator[1:], driven), lfilter(numerator, denominator, x), atol=1e-10)
 
 
 def test_lag_is_settled_before_the_first_sample():

@@ -78,8 +78,8 @@ class FeedforwardCompensator:
         since: float = -math.inf,
     ) -> None:  # fmt: skip
         config = at_its_speeds(config or CompensatorConfig(), crane, "reversal_speed")
-        self._ranges = ChannelRanges(crane)
-        check_on_crane(config, self._ranges.load)
+        self.ranges = ChannelRanges(crane)
+        check_on_crane(config, self.ranges.load)
         self.crane, self.seed, self.config = crane, completed(seed_model, crane), config
         self._seed_law = FrictionLaw(self.seed, config.gains)
         self._law = self._seed_law
@@ -129,7 +129,7 @@ class FeedforwardCompensator:
         slew limit that could not let go in time of what is published.
         """
         config = at_its_speeds(config, self.crane, "reversal_speed")
-        check_on_crane(config, self._ranges.load)
+        check_on_crane(config, self.ranges.load)
         self.output.configure(self._absolute(config), config.slew_limit, config.ramp_time, config.max_age, config.lead)
         self.config = config
         self._seed_law, self._law = FrictionLaw(self.seed, config.gains), FrictionLaw(self.model, config.gains)
@@ -228,7 +228,7 @@ class FeedforwardCompensator:
 
     # -- parts of a step
     def _needed(self) -> Needs:
-        return Needs(self._ranges, self._law.reads, self.config.velocity_source, math.isfinite(self.config.load))
+        return Needs(self.ranges, self._law.reads, self.config.velocity_source, math.isfinite(self.config.load))
 
     def _speed(self, sample: Sample) -> float:
         return sample.speed_reference if self.config.velocity_source == "reference" else sample.motor_speed
@@ -246,7 +246,7 @@ class FeedforwardCompensator:
         )  # fmt: skip
         groups = len(sample.groups)
         torque = self.config.scale * self._law.torque(x, groups)
-        magnitude = self._seed_law.magnitude(x, groups, fastest_command(sample.motor_speed, self._ranges.speed))
+        magnitude = self._seed_law.magnitude(x, groups, fastest_command(sample.motor_speed, self.ranges.speed))
         envelope = self.config.envelope * magnitude
         if not (math.isfinite(torque) and math.isfinite(envelope)):
             self._lost = ("finite model",)
@@ -275,7 +275,7 @@ class FeedforwardCompensator:
     def _turn(self, sample: Sample) -> None:
         """A target without its inputs still turns with the motion, as long as the speed is there."""
         target, speed = self._target, self._speed(sample)
-        if self._ranges.plausible("motor_speed", speed):
+        if self.ranges.plausible("motor_speed", speed):
             target.torque = min(target.size, target.envelope) * smooth_sign(speed, self.config.reversal_speed)
             target.reversal = math.inf
 

@@ -26,7 +26,6 @@ from winch_friction.online.readiness import ANSWERING, make_ready
 from winch_friction.physics.errors import InputError, check, option
 from winch_friction.physics.friction import FrictionModel, registered_terms
 from winch_friction.physics.winch.crane import Crane
-from winch_friction.physics.winch.operating_point import ChannelRanges
 from winch_friction.records.model_file import load_model
 from winch_friction.records.topics import joint_state, stamp_header
 
@@ -211,7 +210,7 @@ class CompensatorNode(WinchNode):
         super().check_settings(changes)
         if hasattr(self, "service"):
             config = self._config.read(self, changes)
-            check_on_crane(config, ChannelRanges(self.crane).load)
+            check_on_crane(config, self.service.law.ranges.load)
             self.service.law.output.check_slew(config.slew_limit)
 
     def apply_settings(self) -> None:

@@ -23,7 +23,7 @@ from winch_friction.records.sample_stream import (
     group_columns,
     shown_columns,
     without_holes,
-)  # fmt: skip
+)
 from winch_friction.records.topics import Input, TopicMap, stamp_time
 
 # -- how time is judged

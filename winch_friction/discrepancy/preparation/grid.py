@@ -187,14 +187,6 @@ def spikes_of(gap: FloatArray, moving: np.ndarray, dt: float) -> np.ndarray:
 
 
 # -- recursive filters
-def filtered(numerator: FloatArray, denominator: FloatArray, x: FloatArray) -> FloatArray:
-    """y with sum_i denominator_i y[k-i] = sum_i numerator_i x[k-i] from rest, shape (samples,); denominator_0 is 1."""
-    right = numerator[0] * x
-    for i, weight in enumerate(numerator[1:], 1):
-        right[i:] += weight * x[:-i]
-    return recursive(list(denominator[1:]), right)
-
-
 def recursive(before: Sequence[FloatArray | float], driven: FloatArray) -> FloatArray:
     """y with y[k] + sum_i before_i y[k-i] = driven[k] from rest, shape (samples,), i from 1; `driven` is overwritten.
 
@@ -209,4 +201,4 @@ def recursive(before: Sequence[FloatArray | float], driven: FloatArray) -> Float
 def lagged(x: FloatArray, dt: float, time_constant: float) -> FloatArray:
     """First-order lag of samples `dt` apart, exact for values held over a step; settled before the first of them."""
     keep = float(np.exp(-dt / time_constant))
-    return x[0] + filtered(np.array([1.0 - keep]), np.array([1.0, -keep]), x - x[0])
+    return x[0] + recursive([-keep], (1.0 - keep) * (x - x[0]))

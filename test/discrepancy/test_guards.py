@@ -417,12 +417,14 @@ def test_a_law_whose_companion_is_dropped_has_the_shape_that_it_needs_alone():
     def trial_of(own):
         """The locked runs need the second name alone, whatever its shape: the file is fitted anew."""
         left = 3.0 * WAVE * ("other" not in own.selection.final.names) + noise(1)
-        return Trial(own, None, None, replace(side(3.0 * WAVE + noise(), left), least_noise=0.1))
+        labels = [slot.label for slot in own.selection.final.slots]
+        return Trial(own, labels, None, replace(side(3.0 * WAVE + noise(), left), least_noise=0.1))
 
     nameless = trial_of(replace(search, selection=replace(search.selection, final=cross.explain(()), found=())))
     proven = each_proven(trial_of(search), nameless, trial_of, np.random.default_rng(0))
     assert [slot.label for slot in proven.search.selection.final.slots] == ["alone"]
     assert [each.slot.label for each in proven.search.selection.found] == ["alone"]
+    assert proven.repaired == ["alone"]  # its file is of that shape as well
 
 
 @pytest.mark.parametrize("alone", [0.0, 2.0])  # what the other leaves of the locked runs by itself

@@ -176,10 +176,24 @@ def test_a_drives_torque_has_a_zero_like_a_transducer():
     run = SimpleNamespace(
         groups=[], time=np.zeros(5), speed=np.zeros(5), load=np.zeros(5), radius=np.ones(5), gear_ratio=100.0,
         inertia=1.0, acceleration=np.zeros(5), dt=0.02, rated_torque=300.0, corrections=np.empty((5, 0)),
-        predicted=np.zeros(5), from_speed=np.zeros(5),
+        predicted=np.zeros(5), from_speed=np.zeros(5), load_friction=np.zeros(5), load_acceleration=np.zeros(5),
     )  # fmt: skip
     zero = tolerance_columns(run)[:, [name for name, *_ in TOLERANCES].index("zero")]
     assert 0.15 * zero == pytest.approx(np.full(5, 1.5 * 1e-3 * 300.0))
+
+
+def test_gears_may_lose_with_the_ropes_true_tension():
+    """A load that is accelerated upwards at a tenth of g pulls by a tenth more, and what is lost as a share of its pull
+    may grow by as much, or by nothing: a tenth of 300 N m per unit is between none and all of it."""
+    run = SimpleNamespace(
+        groups=[], time=np.zeros(3), speed=np.zeros(3), load=np.full(3, 4e4), radius=np.ones(3), gear_ratio=100.0,
+        inertia=1.0, acceleration=np.zeros(3), dt=0.02, rated_torque=300.0, corrections=np.empty((3, 0)),
+        predicted=np.zeros(3), from_speed=np.zeros(3), load_friction=np.array([300.0, 300.0, -300.0]),
+        load_acceleration=np.array([0.0, 0.981, 0.981]),
+    )  # fmt: skip
+    at = [name for name, *_ in TOLERANCES].index("tension")
+    np.testing.assert_allclose(tolerance_columns(run)[:, at], [0.0, 30.0, -30.0])
+    assert TOLERANCES[at][2:] == (0.0, 1.0)
 
 
 def test_a_coarse_transducer_may_be_off_by_its_own_step():

@@ -58,6 +58,7 @@ TOLERANCES = (
     ("timing", 0.3, -0.35, 0.6),  # samples that speed comes late: a counting encoder's mean is half a sample old
     # bar of the driving group's drop, and of the others': a step of a 12-bit transducer of 600 bar, or a coarser one's
     *((name, STEP / 3.0, -STEP, STEP) for name in ("zero", "passive zero")),
+    ("tension", 0.5, 0.0, 1.0),  # share of the load's acceleration with which gears and drum lose as with its weight
 )
 LINE, PORT, CHURNING = "line_pressure_drop", "port_turbulence", "churning"
 CHURNS, TOP = 1.9, 0.999  # exponent of churning at its typical value; share of the samples that are slower than the top
@@ -106,9 +107,7 @@ def base_of(
     shift = (at - seed) / scale
     lower = np.maximum(-LIMITS.prior_bound - shift, (bounds[:, 0] - at) / scale)
     upper = np.minimum(LIMITS.prior_bound - shift, (bounds[:, 1] - at) / scale)
-    more = [
-        (sigma * (HELD if name in held else 1.0), low / sigma, high / sigma) for name, sigma, low, high in TOLERANCES
-    ]
+    more = [(std * (HELD if name in held else 1.0), low / std, high / std) for name, std, low, high in TOLERANCES]
     more += [
         ((loose or {}).get(key_of(each)) or correction_std(each), -LIMITS.prior_bound, LIMITS.prior_bound)
         for each in expanded.corrections
@@ -203,7 +202,8 @@ def tolerance_columns(run: PreparedRun) -> FloatArray:
     ]
     if not run.groups:  # its torque is known from elsewhere, and steps by a share of the rated one
         zeros[0] = zeros[0] + LIMITS.least_share_of_torque * run.rated_torque / LIMITS.least_noise
-    return np.column_stack([weight, inertia, timing_column(run), *zeros, run.corrections])
+    tension = run.load_friction * run.load_acceleration / GRAVITY
+    return np.column_stack([weight, inertia, timing_column(run), *zeros, tension, run.corrections])
 
 
 def timing_column(run: PreparedRun) -> FloatArray:

@@ -72,6 +72,7 @@ def test_it_is_asked_where_nothing_else_explains(monkeypatch, first, left_by_law
     monkeypatch.setattr(workflow, "completed", lambda model, crane: model)
     monkeypatch.setattr(workflow, "of_wire", lambda *_: [])
     monkeypatch.setattr(workflow, "of_runs", lambda *_: [])
+    monkeypatch.setattr(workflow, "of_levels", lambda *_: [])
     monkeypatch.setattr(workflow, "against_simulations", lambda runs, model, crane: list(runs))
     monkeypatch.setattr(workflow, "lock_holdout", lambda *_: SimpleNamespace(runs=runs, train=(), holdout=()))
     monkeypatch.setattr(workflow, "meet", lambda *_: None)

@@ -32,6 +32,8 @@ class Found:
     flow: tuple = ()
     ripple: object = None
 
+    explanation = SimpleNamespace(names=("one",))
+
     @property
     def verdict(self):
         return SimpleNamespace(kind=self.kind, untold=False)

@@ -127,7 +127,7 @@ def _once_more(study: Study, given: Given, trial: Trial, search: Search) -> tupl
         study, trial = _with_other_runs(study, trial)
         if trial.search.verdict.kind == UNEXPLAINED and search.verdict.kind in (MISSING, AMBIGUOUS):
             study, trial = again.by_beyond(study, trial, search)
-        if trial.search.verdict.kind == UNEXPLAINED:
+        if trial.search.verdict.kind == UNEXPLAINED or len(trial.search.explanation.names) > 1:
             trial = again.by_groups(study, again.without_implausible(study, trial, search))
         if trial.search.verdict.kind != NOTHING:
             study.options.told("drawing surfaces")

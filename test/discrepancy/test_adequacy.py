@@ -22,6 +22,7 @@ from winch_friction.discrepancy.answer import INSUFFICIENT
 from winch_friction.discrepancy.engine.chance import Size
 from winch_friction.discrepancy.next_experiment import (
     insufficient,
+    of_levels,
     of_own_terms,
     of_runs,
     of_wire,
@@ -200,6 +201,33 @@ def test_runs_that_keep_plainly_more_than_any_other_are_said(left, said):
     notes = of_runs([SimpleNamespace(most_left_first=dict(part)) for part in (runs[:4], runs[4:])])
     assert len(notes) == bool(said)
     assert "".join(notes).startswith(said)
+
+
+def left_of(levels, friction=0.0):
+    """What runs of 400 N m per unit and 40 kN m at a gear of 100 keep: a level each, and friction beside noise."""
+    way = np.tile([1.0, -1.0, -1.0, -1.0], 50)
+    noise = 0.2 * np.random.default_rng(3).standard_normal((len(levels), 200))
+    after = np.array(levels)[:, None] + friction * way + noise
+    runs = [SimpleNamespace(drum_torque=np.full(5, 4e4), gear_ratio=100.0, unit_torque=4.0) for _ in levels]
+    blocks = SimpleNamespace(run=np.repeat(np.arange(len(levels)), 200), direction=np.tile(way, len(levels)))
+    return SimpleNamespace(runs=runs, blocks=blocks, after=after.ravel(), floor=0.22)
+
+
+@pytest.mark.parametrize(("trained", "friction", "said"), [
+    ((0.5, -0.6, 0.8, -0.3), 0.0, "each run keeps a level of its own that acts the same way hoisting and lowering, "
+     "-0.6 to +0.82 % of its load"),
+    ((0.5, -0.6, 0.8), 0.0, ""),  # too few runs
+    ((0.5, 0.6, 0.8, 0.7), 0.0, ""),  # one tare
+    ((0.5, -0.6, 0.8, -0.3), 0.5, ""),  # and friction
+    ((0.05, -0.06, 0.08, -0.03), 0.0, ""),  # that are noise
+])  # fmt: skip
+def test_of_loads_that_are_off_by_another_amount_in_each_run_is_said_to_weigh_them(trained, friction, said):
+    notes = of_levels([left_of(trained, friction), left_of((0.4 * trained[0], 0.3 * trained[0]), friction)])
+    assert len(notes) == bool(said)
+    assert "".join(notes).startswith(said)
+    one_way = left_of(trained, friction)
+    one_way.blocks.direction = np.ones(len(one_way.after))
+    assert of_levels([one_way] * 2) == []  # nobody tells such a level from friction
 
 
 @pytest.mark.parametrize(("share", "kept"), [(0.2, False), (0.8, True)])

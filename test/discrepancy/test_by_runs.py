@@ -20,11 +20,11 @@ def side(left):
     return SimpleNamespace(size_after=size, floor=FLOOR, excused=FLOOR, left_by_run=())
 
 
-def trial(kind, locked=FAR, train=FAR, law=EACH_RUN):
+def trial(kind, locked=FAR, train=FAR, law=EACH_RUN, names=("brake_drag",)):
     slot = SimpleNamespace(name="brake_drag", law=law)
     search = SimpleNamespace(
         verdict=SimpleNamespace(kind=kind), given=None, selection=SimpleNamespace(found=[SimpleNamespace(slot=slot)]),
-        flow=(), ripple=None,
+        flow=(), ripple=None, explanation=SimpleNamespace(names=names),
     )  # fmt: skip
     return SimpleNamespace(search=search, holdout=side(locked), train=side(train))
 
@@ -72,6 +72,7 @@ def test_it_is_asked_where_nothing_else_explains(monkeypatch, first, left_by_law
     monkeypatch.setattr(workflow, "completed", lambda model, crane: model)
     monkeypatch.setattr(workflow, "of_wire", lambda *_: [])
     monkeypatch.setattr(workflow, "of_runs", lambda *_: [])
+    monkeypatch.setattr(workflow, "of_levels", lambda *_: [])
     monkeypatch.setattr(workflow, "against_simulations", lambda runs, model, crane: list(runs))
     monkeypatch.setattr(workflow, "lock_holdout", lambda *_: SimpleNamespace(runs=runs, train=(), holdout=()))
     monkeypatch.setattr(workflow, "meet", lambda *_: None)
@@ -152,13 +153,37 @@ def test_an_error_of_one_driving_group_is_taken_where_it_closes_the_gap(monkeypa
         return other.search
 
     monkeypatch.setattr(again, "of_one_group", lambda runs: ["one"] if two else [])
+    monkeypatch.setattr(again, "every_candidate", lambda *_: ("every",))
     monkeypatch.setattr(again, "search_runs", search)
     monkeypatch.setattr(again, "standing", lambda *_: other)
     before = trial(UNEXPLAINED)
     before.search.given = SimpleNamespace(prepared=(), model=None)
     after = again.by_groups(STUDY, before)
     assert (after is other) is taken
-    assert asked == [("one",)] * two
+    # alone, and where that does not do, beside everything else
+    assert asked == [("one",), ("every", "one")][: two * (1 if taken else 2)]
+
+
+@pytest.mark.parametrize(("names", "other", "taken", "asked"), [
+    ("ab", trial(MISSING, FLOOR, FLOOR), True, 1),
+    ("ab", trial(MISSING, FLOOR, FLOOR, names="cd"), False, 1),  # as many names
+    ("ab", trial(MISSING, FLOOR, 1.9 * FLOOR), False, 1),  # leaves more of the runs to learn from
+    ("ab", trial(MISSING, 1.4 * FLOOR, FLOOR), False, 1),  # or of the locked ones
+    ("a", trial(MISSING, FLOOR, FLOOR), False, 0),
+])  # fmt: skip
+def test_an_error_of_one_driving_group_that_leaves_no_more_outdoes_several_names(
+    monkeypatch, names, other, taken, asked
+):
+    """A zero of 3.2 bar of the group that compensates heave was a feedback of the passive one and a radius that sinks
+    in: without a word of doubt, for one group was asked only where nothing had a name."""
+    calls = []
+    monkeypatch.setattr(again, "of_one_group", lambda runs: ["one"])
+    monkeypatch.setattr(again, "search_runs", lambda study, given: calls.append(study) or other.search)
+    monkeypatch.setattr(again, "standing", lambda *_: other)
+    before = trial(AMBIGUOUS, 1.3 * FLOOR, 1.6 * FLOOR, names=names)
+    before.search.given = SimpleNamespace(prepared=(), model=None)
+    assert (again.by_groups(STUDY, before) is other) is taken
+    assert len(calls) == asked
 
 
 @pytest.mark.parametrize(("other", "too_large", "taken"), FURTHER)

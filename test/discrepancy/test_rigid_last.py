@@ -32,6 +32,8 @@ class Found:
     flow: tuple = ()
     ripple: object = None
 
+    explanation = SimpleNamespace(names=("one",))
+
     @property
     def verdict(self):
         return SimpleNamespace(kind=self.kind, untold=False)
@@ -127,6 +129,7 @@ def surrounded(monkeypatch, met, told=True):
     monkeypatch.setattr(workflow, "completed", lambda model, crane: model)
     monkeypatch.setattr(workflow, "of_wire", lambda *_: ["how long is the wire"])
     monkeypatch.setattr(workflow, "of_runs", lambda sides: [f"which of {len(sides)} sides"])
+    monkeypatch.setattr(workflow, "of_levels", lambda *_: [])
     monkeypatch.setattr(workflow, "not_borne_out", lambda search, stands: [f"{search.kind} at first"])
     monkeypatch.setattr(workflow, "against_simulations", lambda runs, model, crane: list(runs))
     monkeypatch.setattr(workflow, "lock_holdout", lambda runs, share, rng: split)

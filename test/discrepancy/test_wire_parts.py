@@ -8,6 +8,7 @@ import pytest
 from winch_friction.discrepancy.preparation.suspended_load import Mode
 from winch_friction.discrepancy.preparation.wire_mode import (
     DAMPING_RATIOS,
+    MOST_DAMPED,
     TOLD,
     WIRE_LENGTHS,
     _best_frequency,
@@ -219,6 +220,16 @@ def test_as_many_that_deny_a_damping_as_ring_by_a_ropes_outvote_it():
     assert _outvoted([against, ringing, filtered], agreed)
     assert not _outvoted([against, ringing, ringing], agreed)
     assert not _outvoted([filtered], agreed)
+
+
+@pytest.mark.parametrize(("filters", "falls"), [(0.1, True), (0.14, False)])
+def test_two_that_deny_a_swing_outvote_any_number_whose_noise_a_filter_takes_out_as_well(filters, falls):
+    """A rigid winch's six seas left 0.12 to 0.5 by a damping of 0.2 to 0.45, hardly more by any other; two hoists that
+    such a load would have swung by 30 and 8 times as much were outvoted, and a null kept 0.6 bar."""
+    left = np.where(np.array(DAMPING_RATIOS) < MOST_DAMPED / 2.0, 0.1, filters)
+    seas, against = [run_of(damping=0.3, left=tuple(left))] * 6, run_of(left=(8.0,) * 11)
+    assert _outvoted([*seas, against, against], _one_ratio(0.3)) == falls
+    assert not _outvoted([*seas, against], _one_ratio(0.3))  # one alone may have another cause
 
 
 @pytest.mark.parametrize(("own", "found"), [(8.0, 8.0), (8.1, 8.1), (8.3, 8.0), (7.7, 8.0), (0.0, 0.0)])

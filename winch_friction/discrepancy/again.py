@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
 
-from winch_friction.discrepancy.answer import AMBIGUOUS, MISSING
+from winch_friction.discrepancy.answer import AMBIGUOUS, MISSING, UNEXPLAINED
 from winch_friction.discrepancy.candidates.families import SURFACES, free_members
 from winch_friction.discrepancy.catalogue import another_in_each_run, of_one_group
 from winch_friction.discrepancy.expansion import Given, Split, as_rigid, meet, swings
@@ -36,15 +36,29 @@ def by_surfaces(study: Study, trial: Trial) -> Trial:
 
 
 def by_groups(study: Study, trial: Trial) -> Trial:
-    """What nothing explains, once more with an error of one driving group alone; the trial as it is unless that brings
-    the locked runs to their floor, and the others near theirs."""
-    given = trial.search.given
-    own = of_one_group(given.prepared)
-    chosen = replace(study, options=replace(study.options, candidates=tuple(own)))
-    search = search_runs(chosen, given) if own else None
-    if search is None or not search.selection.found:
+    """What nothing explains, or several names do together, once more with an error of one driving group alone, and what
+    nothing explains with one beside everything else; the trial as it is unless that brings the locked runs to their
+    floor, and the others near theirs, with fewer names than stand and no more left of either."""
+    given, stands = trial.search.given, trial.search.explanation.names
+    named = trial.search.verdict.kind in (MISSING, AMBIGUOUS)
+    own = () if named and len(stands) < 2 else tuple(of_one_group(given.prepared))
+    if not own:
         return trial
-    return _closing(study, search, trial)
+    for beside in ((),) if named else ((), every_candidate(study, given)):
+        search = search_runs(replace(study, options=replace(study.options, candidates=(*beside, *own))), given)
+        if not search.selection.found:  # what does not show at all shows beside nothing either
+            return trial
+        other = _closing(study, search, trial)
+        if other is not trial and (not named or _simpler(trial, other)):
+            return other
+    return trial
+
+
+def _simpler(trial: Trial, other: Trial) -> bool:
+    """Whether another trial needs fewer names than one that stands, and leaves no more of the locked and other runs."""
+    fewer = len(other.search.explanation.names) < len(trial.search.explanation.names)
+    pairs = ((other.train, trial.train), (other.holdout, trial.holdout))
+    return fewer and all(new.size_after.value <= old.size_after.value for new, old in pairs)
 
 
 def without_implausible(study: Study, trial: Trial, search: Search) -> Trial:
@@ -55,7 +69,7 @@ def without_implausible(study: Study, trial: Trial, search: Search) -> Trial:
     """
     given, final = trial.search.given, search.selection.final
     beyond = {(slot.name, slot.law) for slot in final.slots if search.cross.at_bound(final, slot)}
-    if not beyond:
+    if not beyond or trial.search.verdict.kind != UNEXPLAINED:
         return trial
     kept = tuple(each for each in every_candidate(study, given) if (each.name, each.law_name) not in beyond)
     other = search_runs(replace(study, options=replace(study.options, candidates=kept)), given)

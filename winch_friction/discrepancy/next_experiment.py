@@ -16,7 +16,7 @@ from winch_friction.discrepancy.adequacy import HEAVE, SWING, TELLING, Check
 from winch_friction.discrepancy.answer import INSUFFICIENT, GapResult, Side
 from winch_friction.discrepancy.engine import FloatArray
 from winch_friction.discrepancy.engine.blocks import Blocks, Slot
-from winch_friction.discrepancy.engine.chance import Size
+from winch_friction.discrepancy.engine.chance import Size, rms
 from winch_friction.discrepancy.engine.crossfit import CrossFit, Explanation
 from winch_friction.discrepancy.expansion import Expansion, Given, Split
 from winch_friction.discrepancy.preparation.prepare import prepare
@@ -156,6 +156,7 @@ def of_wire(given: Given) -> list[str]:
     ]
 
 
+NO_LOAD = 1.0  # N m at the shaft: an empty hook, of which no share is told by less
 APART = 2.0  # times what any other run keeps, from where on it is a matter of the runs
 
 
@@ -172,6 +173,33 @@ def of_runs(sides: Sequence[Side]) -> list[str]:
     return [
         f"{', '.join(sorted(names[:k]))} {keep} {size[k - 1]:.2g} times the noise and more, no other run more than "
         f"{size[k]:.2g} times: look for what was another there, such as a setting, a sensor or the date"
+    ]
+
+
+def of_levels(sides: Sequence[Side]) -> list[str]:
+    """What is said of a gap that nothing explains where each run keeps a level of its own that acts one way whatever
+    the motion, and beside it no more than noise: a load or a zero that is off by another amount each time, no friction.
+    """
+    shares, gap = [], False
+    for side in sides:
+        beside, way = side.after.copy(), side.blocks.direction
+        for k, run in enumerate(side.runs):
+            own = side.blocks.run == k
+            means = [float(side.after[own & (way == s)].mean()) for s in (1.0, -1.0) if np.any(own & (way == s))]
+            if len(means) < 2:  # of one direction alone nobody tells a level from friction
+                continue
+            beside[own] -= np.mean(means)
+            weight = float(np.median(np.abs(run.drum_torque))) / run.gear_ratio  # N m at the shaft
+            shares.append(100.0 * float(np.mean(means)) * run.unit_torque / max(weight, NO_LOAD))
+        gap |= rms(side.after) > LIMITS.at_the_floor * side.floor
+        if rms(beside) > LIMITS.at_the_floor * side.floor:
+            return []
+    if not gap or len(shares) < LIMITS.fewest_levels or not min(shares) < 0.0 < max(shares):
+        return []
+    return [
+        f"each run keeps a level of its own that acts the same way hoisting and lowering, {min(shares):+.2g} to "
+        f"{max(shares):+.2g} % of its load, and no more than noise beside it: that is no friction. Weigh each load (or "
+        "log hook_load from a load cell) and read the zeros before each run, then ask again"
     ]
 
 

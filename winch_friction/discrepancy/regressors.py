@@ -71,17 +71,17 @@ def machine_sizes(runs: Sequence[PreparedRun]) -> Mapping[str, float]:
     motor's torque with its displacement, that of all of them (`OF_WINCH`) also with their number, masses with what the
     winch lifts at one pressure, a resistance (also one stated at a fixed flow, under `LINE`) with the square of its
     flow. What is stated at a fixed speed is as much at a slow machine's top speed, under `CHURNING`; of `LINE`, `PORT`
-    and a share of the drum's torque that each motor loses (`OF_DRUM`) counts what is beyond `WITHIN` times. Of a drive
-    without pressures torques go with the largest that it gave, if that is more than one motor has.
+    and a share of the drum's torque that each motor loses (`OF_DRUM`) counts what is beyond `WITHIN` times. Without
+    pressures torques go with the largest that was given, an inertia with the drive's own, never below one motor's.
     """
-    run = runs[0]
-    swept = dict(run.constants).get("max_displacement", 0.0)
+    run, swept = runs[0], dict(runs[0].constants).get("max_displacement", 0.0)
     motors = max((sum(group.count for group in each.groups) for each in runs), default=0)
     if not swept or not motors:
         drives = [np.abs(each.drive_torque[each.used]) for each in runs if each.used.any()]
-        given = max((float(np.quantile(drive, TOP)) for drive in drives), default=0.0)
-        one = max(given / (REFERENCE_MOTOR * REFERENCE_PRESSURE), 1.0)
-        return {**dict.fromkeys(("N*m", "N*m*s/rad"), one), **dict.fromkeys(OF_WINCH, max(one / REFERENCE_MOTORS, 1.0))}
+        given = [float(np.quantile(drive, TOP)) / (REFERENCE_MOTOR * REFERENCE_PRESSURE) for drive in drives]
+        one, heavy = max([*given, 1.0]), max(run.inertia / REFERENCE_INERTIA, 1.0)
+        all_of_them = dict.fromkeys(OF_WINCH, max(one / REFERENCE_MOTORS, 1.0))
+        return {"N*m": one, "N*m*s/rad": one, "kg*m^2": heavy, **all_of_them}
     one, whole = swept / REFERENCE_MOTOR, motors * swept / (REFERENCE_MOTORS * REFERENCE_MOTOR)
     lift = whole * (run.gear_ratio / max(float(each.radius.max()) for each in runs)) / REFERENCE_LIFT
     torques = {**dict.fromkeys(("N*m", "N*m*s/rad", "m^3/rad", "m^5/N"), one), **dict.fromkeys(OF_WINCH, whole)}

@@ -28,6 +28,7 @@ from winch_friction.discrepancy.expansion import Given, meet, swings
 from winch_friction.discrepancy.next_experiment import (
     NextExperiment,
     insufficient,
+    of_levels,
     of_own_terms,
     of_runs,
     of_wire,
@@ -104,7 +105,7 @@ def find_gap(runs: Sequence[Run], crane: Crane, model: FrictionModel, options: G
     if own := [name for each in result.effects if (name := each.law_name or each.name) in model.term_names]:
         notes += of_own_terms(own, model, result.model)
     if result.verdict == UNEXPLAINED:
-        notes += of_wire(given) + of_runs((result.train, result.holdout))
+        notes += of_wire(given) + of_runs(sides := (result.train, result.holdout)) + of_levels(sides)
     refuted = () if seed.refuted is None or explained(result.verdict, proposals) else (seed.refuted,)
     if refuted and result.verdict == UNEXPLAINED and far_off(result.holdout):
         refuted = ()  # its freed parameters leave what is plainly more than noise: they imitate something
@@ -126,7 +127,7 @@ def _once_more(study: Study, given: Given, trial: Trial, search: Search) -> tupl
         study, trial = _with_other_runs(study, trial)
         if trial.search.verdict.kind == UNEXPLAINED and search.verdict.kind in (MISSING, AMBIGUOUS):
             study, trial = again.by_beyond(study, trial, search)
-        if trial.search.verdict.kind == UNEXPLAINED:
+        if trial.search.verdict.kind == UNEXPLAINED or len(trial.search.explanation.names) > 1:
             trial = again.by_groups(study, again.without_implausible(study, trial, search))
         if trial.search.verdict.kind != NOTHING:
             study.options.told("drawing surfaces")

@@ -266,10 +266,17 @@ def _in_tune(run: PreparedRun, stiffness: float) -> float:
 
 
 def _outvoted(able: Sequence[PreparedRun], ratio: Callable[[float, float], float]) -> bool:
-    """Whether as many runs speak against a load so damped as ring like one on a rope: more damping is a filter's, which
-    takes a motion sensor's noise out of heave compensation and tears the other runs apart."""
-    ringing = sum(0.0 < run.wire_mode.damping < MOST_DAMPED for run in able)
-    return sum(_denied(run, ratio) for run in able) >= max(ringing, 1)
+    """Whether as many runs speak against a load so damped as ring like one on a rope: a filter's damping takes a motion
+    sensor's noise out of heave compensation and tears others apart. Two outvote any number that it suits as well."""
+    ringing = [run for run in able if 0.0 < run.wire_mode.damping < MOST_DAMPED]
+    ropes = sum(not _blunt(run) for run in ringing)
+    return sum(_denied(run, ratio) for run in able) >= max(ropes, min(len(ringing), 2), 1)
+
+
+def _blunt(run: PreparedRun) -> bool:
+    """Whether no rope's damping leaves clearly less of a run's swinging than a filter's does."""
+    left, filters = _said(run), np.searchsorted(DAMPING_RATIOS, MOST_DAMPED / 2.0)
+    return bool(left) and min(left[:filters]) > CLEARLY_BEST * min(left[filters:])
 
 
 def _denied(run: PreparedRun, ratio: Callable[[float, float], float]) -> bool:

@@ -19,7 +19,7 @@ from winch_friction.online.load_balance import LoadBalance
 from winch_friction.physics.channels import SLOW_INPUTS
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.friction.term import needed
-from winch_friction.physics.signals import Sample
+from winch_friction.physics.signals import ASSUMED, LOST, Sample
 from winch_friction.physics.winch.crane import Crane
 from winch_friction.records.sample_stream import InputHold
 from winch_friction.records.topics import Input, TopicMap
@@ -79,6 +79,7 @@ class EstimatorService:
         self.missing = (
             *self.law.crane.drive.lacking(sample),
             *absent(sample, self.inputs.ranges, self._needed),
+            *(name for name in ASSUMED if getattr(sample, name) == LOST),
             *standing,
         )
         self.last = self.law.step(sample)

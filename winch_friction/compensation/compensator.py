@@ -77,6 +77,7 @@ class FeedforwardCompensator:
         self, crane: Crane, seed_model: FrictionModel, config: CompensatorConfig | None = None,
         since: float = -math.inf,
     ) -> None:  # fmt: skip
+        self._correct = SampleCorrector(crane, seed_model, since=since)
         config = at_its_speeds(config or CompensatorConfig(), crane, "reversal_speed")
         self.ranges = ChannelRanges(crane)
         check_on_crane(config, self.ranges.load)
@@ -84,7 +85,6 @@ class FeedforwardCompensator:
         self._seed_law = FrictionLaw(self.seed, config.gains)
         self._law = self._seed_law
         self._since = since  # s, the latest sample's stamp
-        self._correct = SampleCorrector(crane, seed_model, since=since)
         self._predictor = SpeedPredictor(config.lead, config.acceleration_filter, config.jerk_filter)
         self._load = DrumTorque(self._correct.crane, config.load, config.load_filter)
         self._needs = self._needed()

@@ -22,6 +22,11 @@ class SampleCorrector:
     """
 
     def __init__(self, crane: Crane, model: FrictionModel, refuse: bool = True, since: float = -math.inf) -> None:
+        for name, value, kind in ("crane", crane, Crane), ("model", model, FrictionModel):
+            if not isinstance(value, kind):  # the two exchanged, or the name of a file
+                raise InputError(
+                    f"{name} must be a {kind.__name__} (wf.load_{name} reads one), found a {type(value).__name__}"
+                )
         self.crane = corrected_crane(crane, model.corrections)
         foreign = [c for c in model.corrections if not c.declared.live]
         self._over = [c for c in foreign if c.ends < since]

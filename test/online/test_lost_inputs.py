@@ -10,6 +10,7 @@ from sea import CRANE, PERIOD, SEED, TOPICS, Fed, swell
 from winch_friction.compensation import CompensatorConfig
 from winch_friction.online.compensator import CompensatorService
 from winch_friction.online.estimator import EstimatorService
+from winch_friction.physics.friction.correction import Correction
 from winch_friction.physics.winch.crane import Drum
 from winch_friction.records.bag_write import MESSAGES
 
@@ -81,3 +82,22 @@ def test_the_estimator_rests_without_what_was_there(column, value):
     assert not service.last.accepted
     learn(0.1, value)
     assert service.missing == ()
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "channel", "shown"),
+    [("wire_weight", 24.5, "wire_out", 800.0), ("pressure_thermal_zero", 3e5, "oil_temperature", 60.0)],
+)
+def test_what_a_correction_reads_is_needed_like_what_a_term_reads(name, value, channel, shown):
+    """Without it the errors that the model knows of stayed in the sample: 20 t of wire, 60 bar of a warm transducer."""
+    model = replace(SEED, corrections=(Correction(name, value),))
+    fed, learning = Fed(QUICK), EstimatorService(CRANE, model, TOPICS)
+    fed.service = CompensatorService(CRANE, model, TOPICS, QUICK)
+    said = f"{name} cannot be taken out without {channel}"
+    for given, missing in ((math.nan, said), (shown, "")):
+        fed.run(1.0, lambda sample, given=given: setattr(sample, channel, given))
+        assert (fed.published[-1][1].valid, fed.service.status(fed.now)["missing"]) == (not missing, missing)
+        sample = swell(fed.now)
+        setattr(sample, channel, given)
+        learning.take_row(sample)
+        assert (learning.missing, learning.last.accepted) == (((said,), False) if missing else ((), True))

@@ -179,7 +179,7 @@ class FeedforwardCompensator:
         self._since = sample.time
         if not self._correct.idle:
             sample = self._correct(sample)
-            distrusted += tuple(f"{name} cannot be taken out" for name in self._correct.standing(sample.time))
+            distrusted += self._correct.left(sample.time)
         self._lost = self._needs.missing(sample) + distrusted
         usable = not self._lost and self._aim(sample, dt, asked)
         if not usable:

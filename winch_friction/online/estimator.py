@@ -75,14 +75,13 @@ class EstimatorService:
 
     def learn(self, sample: Sample) -> Estimate:
         """What a sample of `inputs` tells."""
-        standing = (f"{name} cannot be taken out" for name in self.law.uncorrectable(sample))
+        self.last = self.law.step(sample)
         self.missing = (
             *self.law.crane.drive.lacking(sample),
             *absent(sample, self.inputs.ranges, self._needed),
             *(name for name in ASSUMED if getattr(sample, name) == LOST),
-            *standing,
+            *self.law.uncorrectable(sample),
         )
-        self.last = self.law.step(sample)
         self._stands = math.isfinite(self.last.friction_torque)
         self._doubt(sample, self.last)
         return self.last

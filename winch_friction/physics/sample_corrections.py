@@ -39,17 +39,23 @@ class SampleCorrector:
         self.past = {c.name: max(e.ends for e in self._over if e.name == c.name) for c in self._over}
         live = [c for c in in_turn(model.corrections) if c.declared.live]
         self._signals = [c for action in SIGNAL_ORDER for c in live if c.declared.action is action]
-        self._lacking: tuple[str, ...] = ()
+        self._lacking: tuple[Correction, ...] = ()
         self.idle = not (self._signals or self._over)  # it changes no sample and refuses none
 
     @property
     def uncorrected(self) -> tuple[str, ...]:
         """Names of corrections that the latest sample went without."""
-        return self.impossible + self._lacking
+        return self.impossible + tuple(c.name for c in self._lacking)
 
     def standing(self, time: float) -> tuple[str, ...]:
         """Names of what was taken to be over and is there at `time` s all the same: the sample cannot be used."""
         return tuple(dict.fromkeys(c.name for c in self._over if c.holds(time)))
+
+    def left(self, time: float) -> tuple[str, ...]:
+        """What is known to be wrong with the latest sample, at `time` s, and was not taken out: in words."""
+        over = [f"{name} cannot be taken out" for name in self.standing(time)]
+        without = [f"{c.name} cannot be taken out without {', '.join(c.declared.reads)}" for c in self._lacking]
+        return (*over, *without)
 
     def __call__(self, sample: Sample) -> Sample:
         """The sample without its errors; the given one is left as it is."""
@@ -57,7 +63,7 @@ class SampleCorrector:
             return sample
         groups = {name: replace(member) for name, member in sample.groups.items()}
         out = replace(sample, groups=groups)
-        self._lacking = tuple(c.name for c in self._signals if c.holds(sample.time) and not _correct(out, c))
+        self._lacking = tuple(c for c in self._signals if c.holds(sample.time) and not _correct(out, c))
         return out
 
 

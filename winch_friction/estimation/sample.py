@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 from winch_friction.estimation.config import EstimatorConfig
 from winch_friction.physics.channels import GRAVITY
-from winch_friction.physics.signals import Sample
+from winch_friction.physics.signals import LOST, Sample
 from winch_friction.physics.winch.crane import Crane, sample_drive_torque, sample_load
 from winch_friction.physics.winch.operating_point import ChannelRanges
 
@@ -72,6 +72,8 @@ def usable(sample: Sample, ranges: ChannelRanges, needed: Sequence[str] = ()) ->
     if force == force and not plausible("rope_force", force):
         return False
     if heave == heave and not plausible("heave_velocity", heave):
+        return False
+    if sample.wire_out == LOST:
         return False
     return not ranges.crane.drive.lacking(sample, plausible)
 

@@ -112,7 +112,8 @@ class InputGate:
         self._whole: Run | None = None  # at hand, each row of which shows all there is
         self._came: dict[str, float] = {}  # steady s at which a column's last held value arrived
         self._unbelieved = set[str]()  # columns of which a number was refused
-        self._assumed = ASSUMED if len(crane.drum.layer_radii) > 1 else ("heave_velocity",)
+        matters = {"wire_layer": len(crane.drum.layer_radii) > 1, "wire_out": math.isfinite(crane.wire_stiffness)}
+        self._assumed = tuple(name for name in ASSUMED if matters.get(name, True))
         self._taking: tuple[tuple[str, ...], float] = ((), -math.inf)  # columns of the message at hand, its arrival
 
     # -- messages

@@ -76,9 +76,9 @@ def _correct(sample: Sample, c: Correction) -> bool:
     """Correct a sample in place; False where it lacks what that takes."""
     if c.declared.action is Action.MASS:
         length = sample.wire_out if "wire_out" in c.declared.reads else 1.0
-        if length == length:
+        if math.isfinite(length):
             sample.hook_load += float(c.error(sample.time, None)) * length
-        return length == length or sample.hook_load != sample.hook_load
+        return math.isfinite(length) or sample.hook_load != sample.hook_load
     error = float(c.error(sample.time, sample.oil_temperature))
     if error != error:
         return False

@@ -21,9 +21,9 @@ __all__ = [
 
 FloatArray = NDArray[np.float64]
 NAN = float("nan")
-# where these are absent something is assumed: a crane that stands still, the outer layer. What was there and is not any
-# more is LOST, which no sensor shows: nothing is known then
-ASSUMED, LOST = ("heave_velocity", "wire_layer"), float("inf")
+# where these are absent something is assumed: a crane that stands still, the outer layer, a usual length of wire.
+# What was there and is not any more is LOST, which no sensor shows: nothing is known then
+ASSUMED, LOST = ("heave_velocity", "wire_layer", "wire_out"), float("inf")
 
 
 @dataclass(slots=True)

@@ -67,6 +67,13 @@ def test_a_private_name_is_refused_with_the_public_ones():
         (lambda c, m, r: wf.fit(r, c, motor=m), "fit: data must be a list of runs or files, found a Run"),
         (lambda c, m, r: wf.load_model(m), "load_model: name must be a file or a shipped name, found a FrictionModel"),
         (lambda c, m, r: wf.write_run(r, None), "write_run: path must be a file, found a NoneType"),
+        (lambda c, m, r: wf.FeedforwardCompensator(m, c),
+         "crane must be a Crane (wf.load_crane reads one), found a FrictionModel"),
+        (lambda c, m, r: wf.FrictionEstimator(c, "a6vm215"),
+         "model must be a FrictionModel (wf.load_model reads one), found a str"),
+        (lambda c, m, r: m.only("moter"), "'moter' is no place of a term; did you mean motor?"),
+        (lambda c, m, r: wf.simulate("ahc_55t_215", c, m, seed=1.5),
+         "simulate: seed 1.5: give a whole number, 0 or more"),
         (lambda c, m, r: wf.save_model(c, "a.yaml"), "save_model: model must be a FrictionModel, found a Crane"),
     ],
 )  # fmt: skip

@@ -19,9 +19,9 @@ def test_what_is_taught_is_said_by_what_is_left_of_the_models_own_sigma(after, w
 def test_no_test_is_asked_for_whose_pressure_the_motors_do_not_hold(crane_150t):
     """At half the displacement, half the load; of the grid each other one is there."""
     able = replace(crane_150t, rated_speed=0.0, rated_load=0.0)
-    found = set(excitation._tests(able))
+    found = set(excitation._tests(able, DISPLACEMENTS))
     assert found == {(s, m, d) for s in SPEEDS for m in LOADS for d in DISPLACEMENTS if m <= d}
-    assert all(s <= 400.0 for s, *_ in excitation._tests(replace(able, rated_speed=500.0 * RPM)))
+    assert all(s <= 400.0 for s, *_ in excitation._tests(replace(able, rated_speed=500.0 * RPM), DISPLACEMENTS))
 
 
 def test_a_test_at_a_smaller_displacement_shows_a_higher_pressure(crane_150t, crane2_model):
@@ -40,8 +40,37 @@ def test_a_test_at_a_smaller_displacement_shows_a_higher_pressure(crane_150t, cr
     assert any(each == pytest.approx([0.5 * crane_150t.max_displacement] * 2) for each in values)
 
 
+def swung(*shares):
+    return SimpleNamespace(groups={"main": SimpleNamespace(displacement=np.array(shares) * 3.4e-5)})
+
+
+@pytest.mark.parametrize(
+    ("views", "settings"),
+    [
+        ([swung(0.5, 0.5), swung(0.5)], (0.5,)),  # motors of constant displacement, as a bridge says it
+        ([swung(1.0 / 3.0, np.mean([1.0 / 3.0] * 7))], (pytest.approx(1.0 / 3.0),)),
+        ([swung(0.5, 0.5001)], DISPLACEMENTS),  # a feedback
+        ([swung(0.5), swung(1.0)], DISPLACEMENTS),
+        ([swung(np.nan, 0.5)], (0.5,)),
+        ([swung(0.0, 0.0)], DISPLACEMENTS),
+        ([swung(1.3)], DISPLACEMENTS),  # another unit
+        ([SimpleNamespace(groups={})], DISPLACEMENTS),
+    ],
+)
+def test_motors_of_constant_displacement_are_asked_for_no_other(views, settings, crane_150t):
+    crane = replace(crane_150t, max_displacement=3.4e-5)
+    assert excitation._settings(crane, views) == settings
+
+
 def view(*speeds, **more):
-    known = {"name": "run", "load": np.ones(4), "load_torque": None, "oil": np.ones(4), "layer": np.ones(4)}
+    known = {
+        "groups": {},
+        "name": "run",
+        "load": np.ones(4),
+        "load_torque": None,
+        "oil": np.ones(4),
+        "layer": np.ones(4),
+    }
     speed = np.resize(np.array(speeds), 4)
     return SimpleNamespace(**{**known, "speed": speed, "moving": speed != 0.0, **more})
 

@@ -3,6 +3,7 @@
 from collections.abc import Callable
 from functools import wraps
 from inspect import signature
+from numbers import Integral
 from os import PathLike
 from typing import Any, ParamSpec, TypeVar
 
@@ -54,6 +55,8 @@ def _check(where: str, name: str, value: Any) -> None:
             _check(f"{where}: each", "recording", each)
         return
     kinds, words, instead = _KINDS.get(name, ((object,), "", ""))
+    if name == "seed" and (isinstance(value, bool) or not isinstance(value, Integral)):
+        raise InputError(f"{where} {value!r}: give a whole number, 0 or more")
     if not isinstance(value, kinds):
         hint = f": {instead.format(repr(str(value)))}" if isinstance(value, FILE) else ""
         raise InputError(f"{where} must be {words}, found {_shown(value)}{hint}")

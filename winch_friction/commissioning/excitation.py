@@ -20,6 +20,7 @@ FIT_NOISE = 0.002  # of the rated torque: what a plateau's mean is good for (a t
 SPEEDS = (20.0, 60.0, 150.0, 400.0, 1000.0, 2000.0)
 LOADS = (0.02, 0.3, 0.6, 0.9)
 DISPLACEMENTS = (0.5, 0.75, 1.0)
+CONSTANT = 1e-9  # of the largest displacement; means over equal numbers differ by their rounding
 HOLDING_PRESSURE = 250e5  # Pa, of a normal load test
 
 
@@ -56,7 +57,7 @@ def log_next(crane: Crane, views: Sequence[RunView], model: FrictionModel, infor
     """The tests that would teach most of what is still open, best first, in words; empty where little is open."""
     plain = _with_prior(model)
     best = []
-    for speed, load, displacement in _tests(crane):
+    for speed, load, displacement in _tests(crane, _settings(crane, views)):
         rows = _test_rows(crane, plain, speed * RPM, load, displacement)
         sigma = FIT_NOISE * crane.motor_total(()) * crane.max_displacement * 300e5
         gained = information + rows.T @ rows * EFFECTIVE / 2.0 / sigma**2
@@ -87,11 +88,23 @@ def _rows(view: RunView, model: FrictionModel) -> FloatArray:
     return rows[view.moving & np.isfinite(rows).all(axis=1)]
 
 
-def _tests(crane: Crane) -> Iterator[tuple[float, float, float]]:
-    """The tests of the grid that are within what the crane file says that this crane may lift and turn."""
+def _settings(crane: Crane, views: Sequence[RunView]) -> tuple[float, ...]:
+    """The shares of the largest displacement to test at; the one that there is, of motors whose displacement is the
+    same to the last digit in all runs: a feedback is not, so nothing swings them."""
+    shown = [group.displacement for view in views for group in view.groups.values()]
+    known = np.concatenate([*shown, np.zeros(0)])
+    known = known[np.isfinite(known)] / crane.max_displacement
+    if not len(known) or not 0.0 < known[0] <= 1.0 or np.ptp(known) > CONSTANT:
+        return DISPLACEMENTS
+    return (float(known[0]),)
+
+
+def _tests(crane: Crane, settings: Sequence[float]) -> Iterator[tuple[float, float, float]]:
+    """The tests of the grid that are within what the crane file says that this crane may lift and turn, at these
+    displacements."""
     fastest, heaviest = crane.rated_speed or np.inf, crane.rated_load or np.inf
     loads = [load for load in LOADS if _mass(crane, load) <= heaviest]
-    return ((s, load, d) for s in SPEEDS if s * RPM <= fastest for load in loads for d in DISPLACEMENTS if load <= d)
+    return ((s, load, d) for s in SPEEDS if s * RPM <= fastest for load in loads for d in settings if load <= d)
 
 
 def _mass(crane: Crane, load: float) -> float:

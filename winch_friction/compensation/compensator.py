@@ -77,6 +77,7 @@ class FeedforwardCompensator:
         self, crane: Crane, seed_model: FrictionModel, config: CompensatorConfig | None = None,
         since: float = -math.inf,
     ) -> None:  # fmt: skip
+        self._correct = SampleCorrector(crane, seed_model, since=since)
         config = at_its_speeds(config or CompensatorConfig(), crane, "reversal_speed")
         self.ranges = ChannelRanges(crane)
         check_on_crane(config, self.ranges.load)
@@ -84,7 +85,6 @@ class FeedforwardCompensator:
         self._seed_law = FrictionLaw(self.seed, config.gains)
         self._law = self._seed_law
         self._since = since  # s, the latest sample's stamp
-        self._correct = SampleCorrector(crane, seed_model, since=since)
         self._predictor = SpeedPredictor(config.lead, config.acceleration_filter, config.jerk_filter)
         self._load = DrumTorque(self._correct.crane, config.load, config.load_filter)
         self._needs = self._needed()
@@ -113,7 +113,7 @@ class FeedforwardCompensator:
         self._replaced: FrictionLaw | None = None  # the law that was published last, until the next sample
         self._last: Feedforward | None = None
         self._target, self._pressure_per_torque = _Target(), 0.0
-        self._lost: tuple[str, ...] = ()
+        self.lost: tuple[str, ...] = ()  # what the latest sample lacks, or is doubted for, in words
 
     def _absolute(self, config: CompensatorConfig) -> float:
         return min(config.absolute_limit, self.crane.absolute_torque_limit)
@@ -179,9 +179,9 @@ class FeedforwardCompensator:
         self._since = sample.time
         if not self._correct.idle:
             sample = self._correct(sample)
-            distrusted += tuple(f"{name} cannot be taken out" for name in self._correct.standing(sample.time))
-        self._lost = self._needs.missing(sample) + distrusted
-        usable = not self._lost and self._aim(sample, dt, asked)
+            distrusted += self._correct.left(sample.time)
+        self.lost = self._needs.missing(sample) + distrusted
+        usable = not self.lost and self._aim(sample, dt, asked)
         if not usable:
             self._predictor.reset()
             self._turn(sample)
@@ -207,7 +207,7 @@ class FeedforwardCompensator:
             "enabled": self._enabled,
             "model": self.model.name,
             "past_corrections": past_corrections(self._correct),
-            "missing": ", ".join(self._lost) or slow,
+            "missing": ", ".join(self.lost) or slow,
             "fade": self.output.fade.value,
             "friction_torque": self.output.torque,
             "drum_torque": self._target.drum_torque,
@@ -249,7 +249,7 @@ class FeedforwardCompensator:
         magnitude = self._seed_law.magnitude(x, groups, fastest_command(sample.motor_speed, self.ranges.speed))
         envelope = self.config.envelope * magnitude
         if not (math.isfinite(torque) and math.isfinite(envelope)):
-            self._lost = ("finite model",)
+            self.lost = ("finite model",)
             return False
         bounded = self.output.limits.bound(torque, envelope)
         if self._replaced is not None:
@@ -282,7 +282,7 @@ class FeedforwardCompensator:
     def _without_time(self) -> Feedforward:
         """A sample that cannot be placed in time changes nothing but the counts."""
         self._counts["stale"] += 1
-        self._lost = ("time",)
+        self.lost = ("time",)
         return self._last or Feedforward(0.0, 0.0, 0.0, 0.0, "waiting", 0.0, 0.0)
 
     def _feedforward(self, time: float, state: str, valid: bool) -> Feedforward:

@@ -118,8 +118,8 @@ class FrictionEstimator:
         return self._advance(self._last, sample, dt)
 
     def uncorrectable(self, sample: Sample) -> tuple[str, ...]:
-        """Corrections of the seed that were over at the beginning and are there again: the clock was set back."""
-        return self._correct.standing(sample.time)
+        """In words, the seed's corrections that the latest sample is not rid of, for want of a channel or of a past."""
+        return self._correct.left(sample.time)
 
     def _advance(self, last: Accepted, sample: Sample, dt: float) -> Estimate:
         """Look one step ahead; the sample is taken in only if the gate admits what it says."""

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 from winch_friction.estimation.config import EstimatorConfig
 from winch_friction.physics.channels import GRAVITY
-from winch_friction.physics.signals import Sample
+from winch_friction.physics.signals import LOST, Sample
 from winch_friction.physics.winch.crane import Crane, sample_drive_torque, sample_load
 from winch_friction.physics.winch.operating_point import ChannelRanges
 
@@ -60,9 +60,9 @@ def heave_velocity(sample: Sample) -> float:
 
 
 def usable(sample: Sample, ranges: ChannelRanges, needed: Sequence[str] = ()) -> bool:
-    """Whether the sample has a time, and a speed, drive, wire layer (or none) and load (or none) of this crane's, and
+    """Whether the sample has a time, and a speed, drive, and wire layer, load and heave (or none) of this crane's, and
     what the model's terms `needed` beside them."""
-    plausible, weight, force = ranges.plausible, sample.hook_load, sample.rope_force
+    plausible, weight, force, heave = ranges.plausible, sample.hook_load, sample.rope_force, sample.heave_velocity
     if not (math.isfinite(sample.time) and plausible("motor_speed", sample.motor_speed)):
         return False
     if not ranges.crane.drum.has(sample.wire_layer) or absent(sample, ranges, needed):
@@ -70,6 +70,10 @@ def usable(sample: Sample, ranges: ChannelRanges, needed: Sequence[str] = ()) ->
     if weight == weight and not plausible("hook_load", weight):
         return False
     if force == force and not plausible("rope_force", force):
+        return False
+    if heave == heave and not plausible("heave_velocity", heave):
+        return False
+    if sample.wire_out == LOST:
         return False
     return not ranges.crane.drive.lacking(sample, plausible)
 

@@ -19,7 +19,7 @@ from winch_friction.online.load_balance import LoadBalance
 from winch_friction.physics.channels import SLOW_INPUTS
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.friction.term import needed
-from winch_friction.physics.signals import Sample
+from winch_friction.physics.signals import ASSUMED, LOST, Sample
 from winch_friction.physics.winch.crane import Crane
 from winch_friction.records.sample_stream import InputHold
 from winch_friction.records.topics import Input, TopicMap
@@ -75,13 +75,13 @@ class EstimatorService:
 
     def learn(self, sample: Sample) -> Estimate:
         """What a sample of `inputs` tells."""
-        standing = (f"{name} cannot be taken out" for name in self.law.uncorrectable(sample))
+        self.last = self.law.step(sample)
         self.missing = (
             *self.law.crane.drive.lacking(sample),
             *absent(sample, self.inputs.ranges, self._needed),
-            *standing,
+            *(name for name in ASSUMED if getattr(sample, name) == LOST),
+            *self.law.uncorrectable(sample),
         )
-        self.last = self.law.step(sample)
         self._stands = math.isfinite(self.last.friction_torque)
         self._doubt(sample, self.last)
         return self.last

@@ -12,7 +12,7 @@ from typing import Any
 from winch_friction.online.agreement import Motions, Stamp, StampWatch, Voices
 from winch_friction.physics.channels import GROUP_CHANNELS, SAMPLE_SCALARS
 from winch_friction.physics.errors import check, option
-from winch_friction.physics.signals import NAN, Run, Sample
+from winch_friction.physics.signals import ASSUMED, LOST, NAN, Run, Sample
 from winch_friction.physics.winch.crane import Crane
 from winch_friction.physics.winch.operating_point import ChannelRanges
 from winch_friction.records.sample_stream import (
@@ -21,8 +21,6 @@ from winch_friction.records.sample_stream import (
     Plausibility,
     SampleStream,
     group_columns,
-    shown_columns,
-    without_holes,
 )
 from winch_friction.records.topics import Input, TopicMap, stamp_time
 
@@ -106,12 +104,16 @@ class InputGate:
         self._plausible = Plausibility(self.ranges)
         self._voices, self._motions = Voices(self.ranges), Motions(self.ranges)
         self._on_jump = on_jump
-        self._watch = StampWatch(max(options.stamp_window, options.watchdog_timeout), options.paced)
+        self._window = max(options.stamp_window, options.watchdog_timeout)  # s that a stamp may be ahead
+        self._watch = StampWatch(self._window, options.paced)
         self._stream = SampleStream(topics, hold, admit=self._admit, on_held=self._note_arrival)
         self._torque = crane.drive.channels  # the speed's message may bring it
         self._refusal = ""
         self._whole: Run | None = None  # at hand, each row of which shows all there is
         self._came: dict[str, float] = {}  # steady s at which a column's last held value arrived
+        self._unbelieved = set[str]()  # columns of which a number was refused
+        matters = {"wire_layer": len(crane.drum.layer_radii) > 1, "wire_out": math.isfinite(crane.wire_stiffness)}
+        self._assumed = tuple(name for name in ASSUMED if matters.get(name, True))
         self._taking: tuple[tuple[str, ...], float] = ((), -math.inf)  # columns of the message at hand, its arrival
 
     # -- messages
@@ -156,6 +158,7 @@ class InputGate:
         for column, value in source.decode(message).items():
             if refusal := self._plausible.refusal(column, stamp, value):
                 refusals.append(f"{column}: {refusal}")
+                self._unbelieved.update([column] if value == value else [])
             else:
                 self._came[column] = now
         return "; ".join(refusals)
@@ -165,10 +168,6 @@ class InputGate:
         if math.isinf(self.last_stamp):
             return math.isfinite(stamp)
         return stamp <= self.last_stamp + max(now - self.last_arrival, 0.0) + self._window
-
-    @property
-    def _window(self) -> float:
-        return max(self.options.stamp_window, self.options.watchdog_timeout)
 
     def _speed(self, source: Input, message: Any, receipt: float, now: float, sent: float | None) -> Sample | None:
         arrivals = self.arrivals[source.topic]
@@ -192,19 +191,26 @@ class InputGate:
             self._refuse(arrivals, self._refusal)
         self.last_stamp, self.last_arrival = stamp, now
         self._without_stale(sample, now)
-        return sample
+        return self._with_lost(sample)
 
     def _without_stale(self, sample: Sample, now: float) -> None:
         """What arrived too long ago is lost: stamps alone do not tell an input's age where the speed comes late."""
-        if not self.options.paced:
-            return
         limit = self.hold.limit
-        for column, came in self._came.items():
+        for column, came in self._came.items() if self.options.paced else ():
             if now - came > limit(column):
                 group, _, channel = column.rpartition(".")
                 owner = sample.groups.get(group) if group else sample
                 if owner is not None:
                     setattr(owner, channel, NAN)
+
+    def _with_lost(self, sample: Sample) -> Sample:
+        """The sample; what something is assumed for where it is absent, and that came, is lost in it, not absent."""
+        for name in self._assumed:
+            if math.isnan(getattr(sample, name)) and (
+                name in self._unbelieved or math.isfinite(self.hold.stamp(name, sample.time))
+            ):
+                setattr(sample, name, LOST)
+        return sample
 
     def _admit(self, column: str, stamp: float, value: float) -> bool:
         refusal = self._plausible.refusal(column, stamp, value)
@@ -231,12 +237,13 @@ class InputGate:
         for group, member in sample.groups.items():
             self._strip(member, zip(group_columns(group), GROUP_CHANNELS, strict=True), sample.time)
         self.last_stamp, self.last_arrival = sample.time, sample.time if now is None else now
-        return self.hold.fill(sample)
+        return self._with_lost(self.hold.fill(sample))
 
     def rows(self, run: Run) -> Iterator[Sample]:
         """What `fill` makes of a run's rows, one by one; nothing is held where the run is the first thing that comes
         and all its values are believed."""
-        if not self._believes(run):
+        fresh = run.groups == self.hold.groups and not self.hold.ages(0.0)
+        if not (fresh and self._plausible.believes_whole(run)):
             yield from map(self.fill, run.samples())
             return
         self._whole = run
@@ -244,15 +251,6 @@ class InputGate:
             self.last_stamp = self.last_arrival = sample.time
             yield sample
         self._whole = None
-
-    def _believes(self, run: Run) -> bool:
-        """Whether every channel of a run shows at every row what is believed; those that it lacks it may lack."""
-        fresh = run.groups == self.hold.groups and not self.hold.ages(0.0)
-        return (
-            fresh
-            and without_holes(run)
-            and all(self._plausible.believes(each, run.time, run[each]) for each in shown_columns(run))
-        )
 
     def _strip(self, shown: Any, names: Iterable[tuple[str, str]], stamp: float) -> None:
         """Make what is not believed missing; `names`: the columns, and their fields."""
@@ -286,6 +284,7 @@ class InputGate:
         self._plausible.forget()
         self._voices.forget()
         self._came.clear()
+        self._unbelieved.clear()
         self.last_stamp = -math.inf
 
     # -- what is known of the inputs

@@ -22,6 +22,11 @@ class SampleCorrector:
     """
 
     def __init__(self, crane: Crane, model: FrictionModel, refuse: bool = True, since: float = -math.inf) -> None:
+        for name, value, kind in ("crane", crane, Crane), ("model", model, FrictionModel):
+            if not isinstance(value, kind):  # the two exchanged, or the name of a file
+                raise InputError(
+                    f"{name} must be a {kind.__name__} (wf.load_{name} reads one), found a {type(value).__name__}"
+                )
         self.crane = corrected_crane(crane, model.corrections)
         foreign = [c for c in model.corrections if not c.declared.live]
         self._over = [c for c in foreign if c.ends < since]
@@ -34,17 +39,23 @@ class SampleCorrector:
         self.past = {c.name: max(e.ends for e in self._over if e.name == c.name) for c in self._over}
         live = [c for c in in_turn(model.corrections) if c.declared.live]
         self._signals = [c for action in SIGNAL_ORDER for c in live if c.declared.action is action]
-        self._lacking: tuple[str, ...] = ()
+        self._lacking: tuple[Correction, ...] = ()
         self.idle = not (self._signals or self._over)  # it changes no sample and refuses none
 
     @property
     def uncorrected(self) -> tuple[str, ...]:
         """Names of corrections that the latest sample went without."""
-        return self.impossible + self._lacking
+        return self.impossible + tuple(c.name for c in self._lacking)
 
     def standing(self, time: float) -> tuple[str, ...]:
         """Names of what was taken to be over and is there at `time` s all the same: the sample cannot be used."""
         return tuple(dict.fromkeys(c.name for c in self._over if c.holds(time)))
+
+    def left(self, time: float) -> tuple[str, ...]:
+        """What is known to be wrong with the latest sample, at `time` s, and was not taken out: in words."""
+        over = [f"{name} cannot be taken out" for name in self.standing(time)]
+        without = [f"{c.name} cannot be taken out without {', '.join(c.declared.reads)}" for c in self._lacking]
+        return (*over, *without)
 
     def __call__(self, sample: Sample) -> Sample:
         """The sample without its errors; the given one is left as it is."""
@@ -52,7 +63,7 @@ class SampleCorrector:
             return sample
         groups = {name: replace(member) for name, member in sample.groups.items()}
         out = replace(sample, groups=groups)
-        self._lacking = tuple(c.name for c in self._signals if c.holds(sample.time) and not _correct(out, c))
+        self._lacking = tuple(c for c in self._signals if c.holds(sample.time) and not _correct(out, c))
         return out
 
 
@@ -65,9 +76,9 @@ def _correct(sample: Sample, c: Correction) -> bool:
     """Correct a sample in place; False where it lacks what that takes."""
     if c.declared.action is Action.MASS:
         length = sample.wire_out if "wire_out" in c.declared.reads else 1.0
-        if length == length:
+        if math.isfinite(length):
             sample.hook_load += float(c.error(sample.time, None)) * length
-        return length == length or sample.hook_load != sample.hook_load
+        return math.isfinite(length) or sample.hook_load != sample.hook_load
     error = float(c.error(sample.time, sample.oil_temperature))
     if error != error:
         return False

@@ -15,11 +15,15 @@ from winch_friction.physics.channels import GROUP_CHANNELS, SAMPLE_SCALARS, colu
 from winch_friction.physics.errors import InputError
 
 __all__ = [
-    "GROUP_CHANNELS", "NAN", "SAMPLE_SCALARS", "FloatArray", "GroupSample", "Run", "Sample", "column_unit",
+    "ASSUMED", "GROUP_CHANNELS", "LOST", "NAN", "SAMPLE_SCALARS", "FloatArray", "GroupSample", "Run", "Sample",
+    "column_unit",
 ]  # fmt: skip
 
 FloatArray = NDArray[np.float64]
 NAN = float("nan")
+# where these are absent something is assumed: a crane that stands still, the outer layer, a usual length of wire.
+# What was there and is not any more is LOST, which no sensor shows: nothing is known then
+ASSUMED, LOST = ("heave_velocity", "wire_layer", "wire_out"), float("inf")
 
 
 @dataclass(slots=True)

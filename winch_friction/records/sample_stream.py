@@ -197,6 +197,10 @@ class Plausibility:
         near = (passed > -UNKNOWN_AFTER) & (passed < UNKNOWN_AFTER)
         return not bool((near & (np.abs(np.diff(values)) > most)).any())
 
+    def believes_whole(self, run: Run) -> bool:
+        """Whether every channel shows at every row of a run what is believed; those that it lacks it may lack."""
+        return without_holes(run) and all(self.believes(each, run.time, run[each]) for each in shown_columns(run))
+
     def _too_fast(self, change: Change, passed: float, difference: float) -> bool:
         if not -UNKNOWN_AFTER < passed < UNKNOWN_AFTER:
             return False

@@ -22,6 +22,7 @@ from winch_friction.replay.settings import ReplaySettings, settings_from_metadat
 from winch_friction.replay.voices import CompensatorVoice, EstimatorVoice
 
 MODEL_TOPIC = "/friction_model"
+MUCH = 0.1  # of the samples; a start, and single lost messages, are less
 
 
 @dataclass(frozen=True)
@@ -109,12 +110,23 @@ def _replayed(
     name: str, compensator: CompensatorVoice, estimator: EstimatorVoice, warnings: tuple[str, ...]
 ) -> Replayed:
     refused = tuple(dict.fromkeys(f"{name}: model refused: {each}" for each in compensator.refused))
+    lacking = (
+        *_lacking(f"{name}: the compensator", compensator.lacked, len(compensator.steps)),
+        *_lacking(f"{name}: the estimator", estimator.lacked, len(compensator.steps)),
+    )
     return Replayed(
         compensator=compensator.steps.run(name),
         estimator=estimator.record.run(name),
         model=estimator.service.law.model(),
         parameters=tuple(estimator.service.law.parameters()),
         status=estimator.service.law.status(),
-        warnings=(*warnings, *refused),
+        warnings=(*warnings, *refused, *lacking),
         watchdog=compensator.watchdog.run(name),
     )
+
+
+def _lacking(where: str, lacked: Mapping[str, int], samples: int) -> list[str]:
+    """What a node of a replay did without, or doubted, for a while that counts."""
+    shares = {what: count / max(samples, 1) for what, count in lacked.items()}
+    said = [f"{what} ({100.0 * share:.0f} % of the samples)" for what, share in shares.items() if share > MUCH]
+    return [f"{where} lacked or doubted {', '.join(said)}"] if said else []

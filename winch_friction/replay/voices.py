@@ -1,9 +1,12 @@
 """The two services along a recording: what they say, sample by sample and in the silences."""
 
+from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from math import inf, isfinite
 
+from winch_friction.compensation import Feedforward
+from winch_friction.estimation import Estimate
 from winch_friction.online.compensator import CompensatorService
 from winch_friction.online.estimator import EstimatorService
 from winch_friction.online.inputs import ServiceOptions
@@ -33,6 +36,7 @@ class CompensatorVoice:
     steps: FeedforwardRecord = field(default_factory=FeedforwardRecord)
     watchdog: FeedforwardRecord = field(default_factory=FeedforwardRecord)
     refused: list[str] = field(default_factory=list)
+    lacked: Counter[str] = field(default_factory=Counter)  # samples without an input, or in a doubt, by its words
 
     def __post_init__(self) -> None:
         self._waiting = list(self.settings.phases)
@@ -72,7 +76,7 @@ class CompensatorVoice:
             self._begin(self._waiting.pop(0))
         answer = self.service.take(each.source, each.message, each.receipt, now)
         if answer is not None:
-            self.steps.take(answer)
+            self._note(answer)
 
     def _begins(self, phase: Phase, stamp: float) -> bool:
         if phase.start == phase.start:
@@ -83,8 +87,12 @@ class CompensatorVoice:
     def take_rows(self, run: Run) -> Iterator[None]:
         """A run, one row at a step."""
         for sample in self.service.inputs.rows(run):
-            self.steps.take(self.service.answer(sample, sample.time))
+            self._note(self.service.answer(sample, sample.time))
             yield
+
+    def _note(self, answer: Feedforward) -> None:
+        self.steps.take(answer)
+        self.lacked.update(self.service.law.lost)
 
 
 @dataclass
@@ -96,6 +104,7 @@ class EstimatorVoice:
     topics: TopicMap
     settings: ReplaySettings
     since: float = -inf
+    lacked: Counter[str] = field(default_factory=Counter)
 
     def __post_init__(self) -> None:
         options = ServiceOptions(self.settings.watchdog_timeout, self.settings.stamp_window)
@@ -111,11 +120,15 @@ class EstimatorVoice:
         estimate = self.service.take(each.source, each.message, each.receipt, now)
         if estimate is None:
             return None
-        self.record.take(estimate)
+        self._note(estimate)
         return self.service.model_due(now)
 
     def take_rows(self, run: Run) -> Iterator[FrictionModel | None]:
         """A run, one row at a step; the model that the node would have published after each."""
         for sample in self.service.inputs.rows(run):
-            self.record.take(self.service.learn(sample))
+            self._note(self.service.learn(sample))
             yield self.service.model_due(sample.time)
+
+    def _note(self, estimate: Estimate) -> None:
+        self.record.take(estimate)
+        self.lacked.update(filter(None, (*self.service.missing, self.service.contradiction)))

@@ -13,7 +13,7 @@ from winch_friction.physics.errors import InputError
 from winch_friction.physics.friction.compiled import CompiledTerms, advance_all, compiled
 from winch_friction.physics.friction.correction import Correction, check_corrections
 from winch_friction.physics.friction.symbols import GROUP_SIGNALS, TIME_INDEX, WINCH_SIGNALS
-from winch_friction.physics.friction.term import Parameter, Term, unique_parameters
+from winch_friction.physics.friction.term import Parameter, Term, names_at, unique_parameters
 from winch_friction.physics.signals import FloatArray
 from winch_friction.physics.winch.crane import Crane
 
@@ -146,8 +146,8 @@ class FrictionModel:
         return replace(self, covariance=covariance)
 
     def only(self, *places: str) -> "FrictionModel":
-        """The part of the model whose terms belong to these places ('motor', 'gear and drum', ...)."""
-        return self.subset([term.name for term in self.terms if term.place in places])
+        """The part of the model whose terms belong to these places ('motor', 'gear and drum', ...), and to no other."""
+        return self.subset(names_at(self.terms, places))
 
     def subset(self, term_names: Sequence[str]) -> "FrictionModel":
         """The model with these of its terms, values and covariance carried over."""

@@ -182,6 +182,16 @@ def registered_terms() -> dict[str, Term]:
     return dict(_TERMS)
 
 
+def names_at(terms: Sequence[Term], places: Sequence[str]) -> list[str]:
+    """Names of those of the terms that belong to these places; raises `InputError` for one where no term belongs."""
+    known = sorted({each.place for each in (*registered_terms().values(), *terms)})
+    for place in places:
+        if place not in known:
+            hint = meant(place, known) or f" places are {', '.join(known)}"
+            raise InputError(f"'{place}' is no place of a term;{hint}")
+    return [term.name for term in terms if term.place in places]
+
+
 def term_named(name: str) -> Term:
     """The term of that name; an unknown one raises `InputError` with what to do, and those that are nearly it."""
     _load_shipped()

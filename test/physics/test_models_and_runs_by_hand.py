@@ -2,6 +2,7 @@
 
 import math
 import os
+import sys
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -117,6 +118,17 @@ def test_a_table_of_a_notebook_is_escaped_and_of_four_digits():
 def test_a_library_that_is_not_there_is_named_with_what_installs_it():
     with pytest.raises(InputError, match=r"'no_such_library' is not installed: pip install 'winch_friction\[desk\]'"):
         library("no_such_library", "desk")
+
+
+@pytest.mark.parametrize(
+    ("name", "extra", "asked"),
+    [("pandas", "desk", lambda: model_frame(model("coulomb"))), ("pandas", "desk", lambda: RUN.to_frame()),
+     ("xarray", "xarray", lambda: RUN.to_xarray())],
+)  # fmt: skip
+def test_a_table_is_asked_of_the_extra_that_has_its_library(name, extra, asked, monkeypatch):
+    monkeypatch.setitem(sys.modules, name, None)
+    with pytest.raises(InputError, match=rf"'{name}' is not installed: pip install 'winch_friction\[{extra}\]'"):
+        asked()
 
 
 # -- runs

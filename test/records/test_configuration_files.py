@@ -6,6 +6,8 @@ import yaml
 
 from winch_friction.physics.channels import CM3_PER_REV, RPM
 from winch_friction.physics.errors import InputError
+from winch_friction.physics.friction import FrictionModel
+from winch_friction.physics.friction.table import Table, tabulated
 from winch_friction.records import strict_yaml
 from winch_friction.records.crane_file import crane_from_content, load_crane
 from winch_friction.records.model_file import load_model, model_from_text, model_to_text, save_model
@@ -354,3 +356,29 @@ def test_what_the_reader_has_said_is_not_said_again():
         *first.problems, "f: rated_load: must be above 0, found 0",
     )  # fmt: skip
     assert str(with_all_problems(first, [1], "crane", "f")).endswith(": is this a crane file?")
+
+
+# -- bounds of a parameter
+@pytest.mark.parametrize(
+    ("given", "bounds"),
+    [({"upper": 5}, (-1e4, 5.0)), ({"lower": -5}, (-5.0, 1e4)), ({"lower": -2, "upper": 3}, (-2.0, 3.0)),
+     ({}, (-1e4, 1e4))],
+)  # fmt: skip
+def test_a_bound_that_is_not_given_is_the_declared_one(given, bounds):
+    """Of a torque that may have either sign."""
+    entry = {"value": 1.0, "unit": "N*m"} | given
+    own = {"schema": "winch_friction.model/1", "name": "m", "terms": ["torque_offset"], "parameters": {"T_0": entry}}
+    assert model_from_text(yaml.safe_dump(own)).bounds_of("T_0") == bounds
+
+
+@pytest.mark.parametrize(
+    ("bounds", "written"),
+    [((float("-inf"), 5.0), {"upper": 5.0}), ((-5.0, float("inf")), {"lower": -5.0}),
+     ((float("-inf"), float("inf")), {}), ((-5.0, 5.0), {"lower": -5.0, "upper": 5.0})],
+)  # fmt: skip
+def test_a_bound_is_written_where_there_is_one(bounds, written):
+    term = tabulated(Table("t", (("wire_out", (0.0, 1.0)),)))
+    model = FrictionModel("m", (term,), (2.0, 1.0), bounds={"t_0": bounds})
+    entry = yaml.safe_load(model_to_text(model))["parameters"]["t_0"]
+    assert entry == {"value": 2.0, "unit": "N*m"} | written
+    assert model_from_text(model_to_text(model)).bounds_of("t_0") == bounds

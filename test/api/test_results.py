@@ -1,5 +1,6 @@
 """What the jobs return in a notebook: words, rows and points of the very result behind them."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -157,3 +158,149 @@ def test_options_of_gap_and_check_reach_the_work(monkeypatch):
     assert (runs, crane, model) == ([run], CRANE, MODEL)
     assert (options.holdout, options.seed) == (0.4, 7)
     assert checked == ([run], CRANE, MODEL)
+
+
+# -- what is asked for reaches the work
+def test_a_simulation_has_its_seed_its_hidden_effects_and_the_changes_of_its_scenario(monkeypatch):
+    from winch_friction import simulation
+
+    asked, plain = [], SimpleNamespace(override=lambda changes: ("changed", changes))
+    monkeypatch.setattr(simulation, "load_scenario", lambda name: plain if name == "heave" else None)
+    monkeypatch.setattr(simulation, "simulate", lambda *given: asked.append(given))
+    wf.simulate("heave", CRANE, MODEL, seed=7, hidden={"churning": 2.0}, duration=9.0)
+    wf.simulate("heave", CRANE, MODEL)
+    assert asked == [
+        (("changed", {"duration": 9.0}), CRANE, MODEL, 7, {"churning": 2.0}), (plain, CRANE, MODEL, 0, {}),
+    ]  # fmt: skip
+
+
+@pytest.mark.parametrize("learn", [True, False])
+@pytest.mark.parametrize("params_file", [None, "nodes.yaml"])
+def test_a_replay_learns_where_it_is_asked_to_by_the_settings_of_its_file(monkeypatch, learn, params_file):
+    from winch_friction.replay import recording, settings
+
+    asked = []
+    monkeypatch.setattr(settings, "settings_from_file", lambda path: f"settings of {path}")
+    for name in ("replay_run", "replay_recording"):
+        monkeypatch.setattr(recording, name, lambda *given, name=name, **more: asked.append((name, given, more)))
+    run, own = turning(), params_file and "settings of nodes.yaml"
+    for recorded in (run, "a.mcap"):
+        result = wf.replay(recorded, CRANE, MODEL, learn=learn, params_file=params_file)
+        assert result.seed is MODEL
+    usual = settings.ReplaySettings()
+    assert asked == [
+        ("replay_run", (run, CRANE, MODEL, own or usual), {"learn": learn}),
+        ("replay_recording", ("a.mcap", CRANE, MODEL, own), {"learn": learn}),
+    ]
+
+
+def test_a_suppliers_table_is_fitted_by_the_model_that_is_named(monkeypatch):
+    from winch_friction.identification import motor_identification, supplier_file
+
+    asked = []
+    monkeypatch.setattr(supplier_file, "read_supplier_table", lambda path: path.name)
+    found = SimpleNamespace(chosen=SimpleNamespace(fitted=SimpleNamespace(rms=1.5)))
+    monkeypatch.setattr(
+        motor_identification, "identify_motor", lambda *given, **more: asked.append((given, more)) or found
+    )
+    monkeypatch.setattr(motor_identification, "motor_seed", lambda *given: given)
+    result = wf.fit("a6vm215_generated", motor="thoma", seed=5)
+    assert asked == [
+        (("a6vm215_generated.csv", ["thoma"]), {"chosen": "thoma", "with_complex": False, "seed": 5}),
+    ]  # fmt: skip
+    assert (result.model, result.rms, result.details) == ((found, "a6vm215_generated", {}), 1.5, found)
+
+
+def test_logged_tests_are_fitted_on_top_of_a_motor_alone_and_what_is_held_out_verifies(monkeypatch):
+    from winch_friction.identification import system_identification, verification
+
+    asked, found = [], SimpleNamespace(joint=SimpleNamespace(model="joint"), tests=[SimpleNamespace(curve="curve")])
+    monkeypatch.setattr(
+        system_identification, "identify_system", lambda *given, **more: asked.append((given, more)) or found
+    )
+    monkeypatch.setattr(system_identification, "winch_seed", lambda *given: given)
+    errors = [(np.array([1.0, 4.0]), np.array([4.0, 8.0])), (np.zeros(3), np.full(3, 2.0))]  # squares 12.5 and 4
+    monkeypatch.setattr(
+        verification, "test_errors", lambda model, curves: [
+            SimpleNamespace(modelled=a, measured=b) for a, b in errors if (model, curves) == ("joint", ["curve"])
+        ],
+    )  # fmt: skip
+    tests, kept = [turning()], [turning(hook_load=np.zeros(3))]
+    result = wf.fit(tests, CRANE, motor=MODEL, held_out=kept, seed=3)
+    (((runs, crane, motor, _), more),) = asked
+    assert (runs, crane, more) == (tests, CRANE, {"held_out": kept, "seed": 3})
+    assert motor.term_names == MODEL.only("motor").term_names
+    assert result.rms == pytest.approx(8.25**0.5)  # every test counts once, however long
+    assert (result.model, result.details) == ((found, CRANE, "fitted", {}), found)
+
+
+# -- runs from tables
+def test_a_frames_units_are_those_beside_it_and_its_index_is_the_time():
+    pandas = pytest.importorskip("pandas")
+    frame = pandas.DataFrame(
+        {"time [ms]": [0.0, 500.0, 1000.0], "drum_speed": [60.0, 0.0, -60.0], "motor_torque": [1.0, 2.0, 3.0],
+         "mood": ["good", "bad", "good"]},
+    ).set_index("time [ms]")  # fmt: skip
+    frame.attrs["units"] = {"drum_speed": "rpm", "motor_torque": "kN*m", "mood": ""}
+    crane = wf.load_crane("emps")
+    run = wf.from_frame(frame, "ramp", crane)
+    assert run.time.tolist() == [0.0, 0.5, 1.0]
+    turns = 2.0 * np.pi * crane.gear_ratio
+    assert run["motor_speed"] == pytest.approx([turns, 0.0, -turns])
+    assert run["motor_torque"].tolist() == [1e3, 2e3, 3e3]
+    assert run.aside["mood"].tolist() == ["good", "bad", "good"]
+    assert any("unknown columns kept aside: mood" in each for each in run.warnings)
+    with pytest.raises(InputError, match="gear ratio"):
+        wf.from_frame(frame, "ramp")
+
+
+def test_a_dataset_carries_the_unit_of_each_variable():
+    xarray = pytest.importorskip("xarray")
+    data = xarray.Dataset(
+        {"motor_speed": ("time", [60.0, 120.0], {"units": "rpm"}), "motor_torque": ("time", [1.0, 2.0]),
+         "oil_temperature": ("time", [104.0, 212.0], {"units": "degF"})},
+        coords={"time": ("time", [0.0, 1500.0], {"units": "ms"})},
+    )  # fmt: skip
+    run = wf.from_frame(data, "set")
+    assert (run.name, run.time.tolist()) == ("set", [0.0, 1.5])
+    assert run["motor_speed"] == pytest.approx([2.0 * np.pi, 4.0 * np.pi])
+    assert run["oil_temperature"] == pytest.approx([40.0, 100.0])
+    assert run["motor_torque"].tolist() == [1.0, 2.0]
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        ({"motor_speed": ["fast", 1.0]}, "t: column 'motor_speed' holds something that is not a number"),
+        ({"time": [1.0, 0.0]}, "t: row 1, column 'time': time goes back by 1 s"),
+        ({"motor_torque [bar]": [1.0, 2.0]}, "t: column 'motor_torque .bar.': unit 'bar' cannot be read as N.m"),
+    ],
+)
+def test_a_table_that_is_no_run_is_refused_with_row_and_column(change, said):
+    columns = {"time": [0.0, 1.0], "motor_speed": [1.0, 2.0], "motor_torque": [1.0, 2.0]}
+    if "motor_torque [bar]" in change:
+        del columns["motor_torque"]
+    with pytest.raises(InputError, match=said):
+        wf.from_frame(columns | change, "t")
+
+
+# -- in a notebook
+def test_what_is_learned_is_shown_beside_its_sigma_and_only_what_is_being_learned():
+    names = ("learning", "learned", "frozen", "seed", "unobservable")
+    known = tuple(
+        ParameterEstimate(f"P{k}", "1", value=-1e-9 if k == 1 else 2.0, std=0.5, seed_value=1.0, seed_std=1.0, status=s)
+        for k, s in enumerate(names)
+    )
+    whole = Replay(replace(replayed().result, parameters=known), MODEL)
+    assert whole.summary().endswith("learned: P0 1 -> 2 1, P1 1 -> 0 1, P2 1 -> 2 1")
+    found = Replay(replace(replayed().result, parameters=known[3:]), MODEL)
+    assert found.summary().endswith("learned: nothing beyond the seed")
+    shown = found._repr_html_()
+    assert "<th>parameter</th><th>unit</th><th>seed</th><th>learned</th><th>sigma</th><th>status</th>" in shown
+    assert "<td>P3</td><td>1</td><td>1</td><td>2</td><td>0.5</td><td>seed</td>" in shown
+
+
+def test_a_fit_and_a_gap_show_their_table():
+    assert "<th>parameter</th>" in Fit(MODEL.only("motor"), 1.2345, None)._repr_html_()
+    assert "<td>coulomb</td><td>notch, wear</td><td>T = 12 ± 0.5 N*m</td><td>0.01</td>" in gap()._repr_html_()
+    assert (gap().verdict, gap().model) == ("nothing_missing", MODEL)

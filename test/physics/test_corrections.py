@@ -14,7 +14,7 @@ from winch_friction.physics.errors import InputError
 from winch_friction.physics.fluid import relative_viscosity, relaxed_compression
 from winch_friction.physics.friction.correction import Correction
 from winch_friction.physics.friction.declared_correction import DECLARED, Action
-from winch_friction.physics.sample_corrections import SampleCorrector
+from winch_friction.physics.sample_corrections import SampleCorrector, past_corrections
 from winch_friction.physics.signals import GroupSample, Run, Sample
 from winch_friction.physics.winch import Drum
 from winch_friction.records.model_file import model_from_text, model_to_text
@@ -454,3 +454,121 @@ def test_what_has_grown_stays_and_what_has_a_window_ends_with_it():
     assert Correction("pressure_creep", 1e5, during=((100.0, 200.0),)).ends == math.inf
     assert Correction("pressure_offset", 1e5, during=((100.0, 200.0), (300.0, 400.0))).ends == 400.0
     assert Correction("pressure_offset", 1e5).ends == math.inf
+
+
+# -- what each of them is, by hand: name -> kind, unit, typical, least and largest value, columns that are wrong, those
+# that it needs besides, and what else is said of it
+BOTH, SPEEDS = ("pressure_a", "pressure_b"), ("motor_speed", "drum_speed", "shaft_angle")
+DRIVE, LINES = (*BOTH, "motor_torque"), (*BOTH, "displacement")
+GROUP, NOT_LIVE, OIL = {"by_group": True}, {"live": False}, ("oil_temperature",)
+GAS = GROUP | NOT_LIVE | {"has_time_constant": True}
+CM3, LEAK = 1e-6 / (2.0 * math.pi), ("signal", "m^3/s/Pa", 1.4e-11, 0.0, 1e-9, ("speed_reference",), LINES)
+IS = {
+    "pressure_offset": ("signal", "Pa", 1.5e5, -50e5, 50e5, BOTH[:1], (), GROUP),
+    "pressure_thermal_zero": ("signal", "Pa/K", 1e4, -5e5, 5e5, BOTH[:1], OIL, GROUP),
+    "pressure_thermal_bow": ("signal", "Pa/K^2", 500.0, -2e4, 2e4, BOTH[:1], OIL, GROUP | {"by_warmth": 2}),
+    "pressure_scale": ("signal", "1", 0.01, -0.2, 0.2, BOTH, (), GROUP),
+    "pressure_scale_a": ("signal", "1", 0.01, -0.2, 0.2, BOTH[:1], (), GROUP),
+    "pressure_thermal_span": ("signal", "1/K", 5e-4, -0.01, 0.01, BOTH, OIL, GROUP),
+    "pressure_thermal_span_a": ("signal", "1/K", 5e-4, -0.01, 0.01, BOTH[:1], OIL, GROUP),
+    "pressure_curvature": ("signal", "1/Pa", 5e-10, -5e-9, 5e-9, BOTH, (), GROUP),
+    "pressure_curvature_a": ("signal", "1/Pa", 5e-10, -5e-9, 5e-9, BOTH[:1], (), GROUP),
+    "pressure_bend": ("signal", "1", 0.02, -0.5, 0.5, BOTH, (), GROUP | {"bends_in": "Pa"}),
+    "displacement_offset": ("signal", "m^3/rad", CM3, -20 * CM3, 20 * CM3, LINES[2:], (), GROUP),
+    "displacement_thermal_zero": ("signal", "m^3/rad/K", 0.1 * CM3, -2 * CM3, 2 * CM3, LINES[2:], OIL, GROUP),
+    "pressure_creep": ("signal", "Pa", 3e5, -50e5, 50e5, BOTH[:1], (), GROUP | {"grows": True}),
+    "displacement_scale": ("signal", "1", 0.01, -0.2, 0.2, LINES[2:], (), GROUP),
+    "displacement_curvature": ("signal", "rad/m^3", 100.0, -1e4, 1e4, LINES[2:], (), GROUP),
+    "displacement_bend": ("signal", "1", 0.02, -0.5, 0.5, LINES[2:], (), GROUP | {"bends_in": "m^3/rad"}),
+    "displacement_s_shape": (
+        "signal", "m^3/rad", CM3, -20 * CM3, 20 * CM3, LINES[2:], (), GROUP | {"bends_in": "m^3/rad"}
+    ),
+    "signal_delay": ("signal", "s", 0.05, -0.5, 0.5, SPEEDS, (), NOT_LIVE),
+    "pressure_delay": ("signal", "s", 0.05, -0.5, 0.5, DRIVE, (), NOT_LIVE),
+    "signal_clock": ("signal", "1", 1e-3, -5e-3, 5e-3, SPEEDS, (), NOT_LIVE | {"by_time": True}),
+    "pressure_clock": ("signal", "1", 1e-3, -5e-3, 5e-3, DRIVE, (), NOT_LIVE | {"by_time": True}),
+    "signal_filter": ("signal", "s", 0.05, 0.0, 0.5, SPEEDS, (), NOT_LIVE),
+    "pressure_filter": ("signal", "s", 0.05, 0.0, 0.5, DRIVE, (), NOT_LIVE),
+    "layer_radius": ("geometry", "m", 0.06, -0.5, 0.5, (), (), {"by_layer": True}),
+    "tare_load": ("load", "kg", 2000.0, -2e4, 2e4, ("hook_load",), (), {}),
+    "tare_creep": ("load", "kg", 2000.0, -2e4, 2e4, ("hook_load",), (), {"grows": True}),
+    "wire_weight": ("load", "kg/m", 12.0, 0.0, 200.0, ("hook_load",), ("wire_out",), {}),
+    "inertia": ("inertia", "kg*m^2", 0.2, -1e5, 1e5, (), (), {}),
+    "accumulator_warmth": ("signal", "1", 0.02, -0.2, 0.2, BOTH[:1], BOTH[1:], GAS),
+    "accumulator_slow_warmth": ("signal", "1", 0.02, -0.2, 0.2, BOTH[:1], BOTH[1:], GAS),
+    "accumulator_heat": ("signal", "1", 1.0, -10.0, 10.0, BOTH[:1], BOTH[1:], GAS),
+    **{f"{kind}_leakage": (*LEAK, GROUP | NOT_LIVE) for kind in ("slip", "orifice", "opening_gap", "isoviscous")},
+    "entrained_air": ("signal", "m^3", 6e-4, 0.0, 0.1, ("speed_reference",), LINES, GROUP | NOT_LIVE),
+}  # fmt: skip
+USUAL = {
+    "by_group": False, "by_layer": False, "has_time_constant": False, "live": True, "grows": False, "bends_in": "",
+    "by_time": False, "by_warmth": 1,
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", DECLARED)
+def test_a_correction_is_declared_with_what_is_wrong_and_how_far_it_may_be(name):
+    own, (kind, unit, typical, lower, upper, channels, reads, more) = DECLARED[name], IS[name]
+    assert (own.name, own.parameter.name, own.kind, own.parameter.unit) == (name, name, kind, unit)
+    bounds = (own.parameter.typical, own.parameter.lower, own.parameter.upper)
+    assert bounds == pytest.approx((typical, lower, upper), rel=1e-9)
+    assert (own.channels, own.reads) == (channels, reads)
+    assert {each: getattr(own, each) for each in USUAL} == USUAL | more
+
+
+def test_the_words_of_a_correction_say_which_signals_it_is_about():
+    assert "how late the speed is logged" in DECLARED["signal_delay"].doc
+    assert "how late the pressures (or the motor torque) are logged" in DECLARED["pressure_delay"].doc
+    for name in ("pressure_scale", "pressure_thermal_span", "pressure_curvature"):
+        assert "both ports" in DECLARED[name].doc
+        assert "at port A" in DECLARED[f"{name}_a"].doc
+    assert len({each.doc for each in DECLARED.values()}) == len(DECLARED)
+
+
+@pytest.mark.parametrize(
+    ("more", "said"),
+    [
+        ({"std": -1.0}, "std must be a finite number from 0, found -1"),
+        ({"std": math.inf}, "std must be a finite number"),
+        ({"time_constant": 0.0}, "time_constant must be above 0 s, found 0"),
+        ({"time_constant": math.inf}, "time_constant must be above 0 s, found inf"),
+    ],
+)
+def test_a_sigma_below_zero_and_a_time_of_nothing_are_none(more, said):
+    with pytest.raises(InputError, match=said):
+        Correction("accumulator_warmth", 0.01, **{"time_constant": 60.0} | more)
+    assert Correction("accumulator_warmth", 0.01, std=0.0, time_constant=60.0).std == 0.0
+
+
+def test_a_bend_that_begins_nowhere_is_none():
+    for beyond in (0.0, math.inf):
+        with pytest.raises(InputError, match="beyond must be above 0 Pa"):
+            Correction("pressure_bend", 0.01, beyond=beyond)
+
+
+@pytest.mark.parametrize(
+    ("name", "ties"),
+    [
+        ("pressure_offset", ({"groups": ("active",)}, {"groups": ("passive",)})),
+        ("layer_radius", ({"layers": (1,)}, {"layers": (2,)})),
+        ("tare_load", ({"during": ((0.0, 1.0),)}, {"during": ((1.0, 2.0),)})),
+        ("pressure_bend", ({"beyond": 1e7}, {"beyond": 2e7})),
+    ],
+)
+def test_one_error_may_stand_for_each_group_layer_time_and_place_to_bend(name, ties, crane2_model):
+    first, second = (Correction(name, 0.01, **each) for each in ties)
+    assert len(replace(crane2_model, corrections=(first, second)).corrections) == 2
+    with pytest.raises(InputError, match=f"'{name}' stands twice"):
+        replace(crane2_model, corrections=(first, replace(first, value=0.02)))
+
+
+@pytest.mark.parametrize(("time", "there"), [(9.9, False), (10.0, True), (20.0, True), (20.1, False), (31.0, True)])
+def test_a_window_holds_from_its_first_second_to_its_last(time, there):
+    assert Correction("tare_load", 1.0, during=((10.0, 20.0), (30.0, math.inf))).holds(time) is there
+
+
+def test_a_node_is_told_of_the_last_end_of_what_is_over(crane_150t, crane2_model):
+    ended = tuple(Correction("signal_delay", 0.05, during=((0.0, end),)) for end in (700.0, 400.0))
+    corrector = SampleCorrector(crane_150t, replace(crane2_model, corrections=ended), since=1000.0)
+    assert corrector.past == {"signal_delay": 700.0}
+    assert past_corrections(corrector) == "signal_delay until 700 s"

@@ -1,5 +1,7 @@
 """Names stand for one term; duplicates and unknown names raise; users add their own."""
 
+from dataclasses import replace
+
 import pytest
 import sympy as sp
 from own_term_files import forgotten, own_terms
@@ -7,7 +9,14 @@ from own_term_files import forgotten, own_terms
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.friction import Scope, Term, register, registered_terms, symbols, term_named
 from winch_friction.physics.friction.symbols import p
-from winch_friction.physics.friction.term import load_file
+from winch_friction.physics.friction.term import (
+    file_of,
+    irreplaceable,
+    known_for_now,
+    load_file,
+    needed,
+    unique_parameters,
+)
 
 
 def test_an_unknown_name_says_what_to_do():
@@ -129,3 +138,57 @@ def test_a_users_file_that_fails_half_way_adds_nothing(tmp_path):
     path.write_text(declared)
     with forgotten("half_way"):
         assert [term.name for term in load_file(path)] == ["half_way"]
+
+
+# -- what a term says of itself
+@pytest.mark.parametrize(
+    ("name", "reads", "groups"),
+    [
+        ("torque_offset", (), False), ("coulomb", ("direction",), False),
+        ("gear_asymmetry", ("direction", "drum_torque", "gear_ratio"), False),
+        ("presliding", ("direction", "drum_torque", "speed_magnitude"), False),
+        ("dwell_stiction", ("direction", "drum_torque", "speed_magnitude"), False),
+        ("torque_ripple", ("drum_torque", "gear_ratio", "shaft_angle"), False),
+        ("case_ports", ("direction", "higher_port", "pressure", "pressure_sum"), True),
+        ("wilson_constant", ("direction", "max_displacement"), False),
+    ],
+)  # fmt: skip
+def test_a_term_reads_what_stands_in_its_equation_and_the_direction_that_it_opposes(name, reads, groups):
+    term = term_named(name)
+    assert (term.reads, term.reads_groups) == (reads, groups)
+
+
+def test_a_channel_in_whose_place_nothing_can_stand_is_named():
+    assert irreplaceable(("wire_layer", "shaft_angle", "time", "oil_temperature")) == ("oil_temperature", "shaft_angle")
+    assert irreplaceable(("wire_out",)) == ("wire_out",)
+    assert needed([term_named("torque_ripple"), term_named("coulomb"), term_named("layer_bedding")]) == ("shaft_angle",)
+
+
+def test_a_parameter_of_two_terms_is_one_in_the_order_of_the_terms():
+    own = Term("own", term_named("coulomb").equation, term_named("coulomb").parameters, Scope.SHAFT, "a test", "motor")
+    found = unique_parameters([term_named("viscous"), term_named("coulomb"), own])
+    assert [each.name for each in found] == ["C5", "C2"]
+
+
+def test_a_proposed_term_is_known_while_its_model_is_read_and_no_longer():
+    own = Term("proposed", sp.Integer(1), (), Scope.SHAFT, "a test", "motor")
+    with known_for_now(own):
+        assert term_named("proposed") is own
+    assert "proposed" not in registered_terms()
+    declared = term_named("coulomb")
+    with known_for_now(replace(declared, doc="another")):
+        assert term_named("coulomb") is declared
+    assert term_named("coulomb") is declared
+
+
+def test_a_users_term_is_of_its_file_and_a_declared_one_of_none(tmp_path):
+    path = own_terms(tmp_path, "of_a_file", "k_of_a_file")
+    with forgotten("of_a_file"):
+        (term,) = load_file(path)
+        assert file_of(term) == path.resolve()
+        assert file_of(term_named("coulomb")) is None
+
+
+def test_an_equation_is_shown_with_the_direction_that_it_opposes():
+    assert term_named("coulomb").latex == "C_{2} s"
+    assert term_named("torque_offset").latex == "T_{0}"

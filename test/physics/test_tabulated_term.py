@@ -8,7 +8,7 @@ import pytest
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.friction import FrictionModel, Scope, term_named
 from winch_friction.physics.friction.compiled import compiled, layout
-from winch_friction.physics.friction.table import Table, at_knots, outlined, tabulated
+from winch_friction.physics.friction.table import FACTORS, Table, at_knots, in_windows, outlined, tabulated
 from winch_friction.records.model_file import model_from_text, model_to_text
 
 WARM = Table(
@@ -260,3 +260,59 @@ def test_one_outline_serves_every_table_of_its_form(table):
         for column, derivative in zip(columns, linear, strict=True):
             np.testing.assert_allclose(column, derivative, rtol=1e-9, atol=1e-12 * np.abs(derivative).max())
             assert np.ptp(column) > 0.0
+
+
+# -- what its parameters may be
+OIL, INF = ("oil_temperature", (20.0, 35.0, 60.0)), float("inf")
+
+
+@pytest.mark.parametrize(
+    ("shape", "anchor", "bounds", "docs"),
+    [
+        ("free", "none", [(-INF, INF, 2.0)] * 3,
+         ["level at the first knots", "rise over oil_temperature 20 ... 35", "rise over oil_temperature 35 ... 60"]),
+        ("rising", "low", [(0.0, INF, 2.0)] * 2,
+         ["rise over oil_temperature 20 ... 35", "rise over oil_temperature 35 ... 60"]),
+        ("rising", "none", [(-INF, INF, 2.0), (0.0, INF, 2.0), (0.0, INF, 2.0)], None),
+        ("rising", "high", [(-INF, 0.0, -2.0)] * 2, None),  # below zero, of which the rise is still to come
+        ("falling", "low", [(-INF, 0.0, -2.0)] * 2, None),
+        ("falling", "high", [(0.0, INF, 2.0)] * 2, None),
+        ("convex_rising", "low", [(0.0, INF, 2.0)] * 2, None),
+    ],
+)  # fmt: skip
+def test_the_sign_of_a_rise_is_that_of_the_curves_shape(shape, anchor, bounds, docs):
+    term = tabulated(Table("curve", (OIL,), shape=shape, anchor=anchor, typical=2.0))
+    assert [(p.lower, p.upper, p.typical) for p in term.parameters] == bounds
+    assert [p.name for p in term.parameters] == [f"curve_{k}" for k in range(0 if anchor == "none" else 1, 3)]
+    assert docs is None or [p.doc for p in term.parameters] == docs
+
+
+@pytest.mark.parametrize(("side", "counts"), [("both", (1.0, 1.0)), ("hoisting", (1.0, 0.0)), ("lowering", (0.0, 1.0))])
+def test_a_curve_of_one_side_counts_that_way_alone(side, counts):
+    model = FrictionModel("m", (tabulated(Table("t", (OIL,), side=side)),), (5.0, 0.0, 0.0))
+    points = [(s, *_point(celsius=30.0)[1:]) for s in (1.0, -1.0)]
+    told = [model.compile(1).scalar_torque(point, model.values, ()) for point in points]
+    assert told == pytest.approx([5.0 * counts[0], -5.0 * counts[1]])
+
+
+def test_a_window_is_one_behind_its_begin_up_to_its_end():
+    table = Table("t", (("time", (10.0, 20.0, 40.0, 50.0)),), shape="windows", weights=(0.5, 2.0))
+    told = [in_windows(table, 3.0, at) for at in (10.0, 10.1, 20.0, 20.1, 40.0, 50.0, 51.0)]
+    assert told == [0.0, 1.5, 1.5, 0.0, 0.0, 6.0, 0.0]
+    assert table.in_times
+    assert not replace(table, knots=(("wire_out", (10.0, 20.0, 40.0, 50.0)),)).in_times
+    assert not Table("t", (("time", (10.0, 20.0)),)).in_times
+
+
+@pytest.mark.parametrize(
+    ("factor", "value", "unit"),
+    [("flow", 11 * 2e-5 * 30.0, "m^3/s"), ("displacement_left", 3e-5 - 2e-5, "m^3/rad"),
+     ("speed_magnitude", 30.0, "rad/s"), ("count", 11.0, "1")],
+)  # fmt: skip
+def test_what_multiplies_a_curve_is_of_one_motor_of_its_group(factor, value, unit):
+    assert FACTORS[factor][1] == unit
+    assert "higher_port" not in FACTORS
+    table = Table("t", (("pressure", (0.0, 1e7)),), times=(factor,), scope=Scope.MOTOR)
+    model = FrictionModel("m", (tabulated(table),), (2.0, 0.0), constants={"max_displacement": 3e-5})
+    point = _point(p=5e6, D=2e-5, w=30.0)
+    assert model.compile(1).scalar_torque(point, model.values, ()) == pytest.approx(11.0 * 2.0 * value)

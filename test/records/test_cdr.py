@@ -49,3 +49,13 @@ def test_a_message_that_was_cut_or_lengthened_is_refused(kind, message):
     for broken in (raw[:-9], raw[: len(raw) // 2], raw[:5], raw + bytes(8)):
         with pytest.raises(Exception, match=r"."):
             READERS[kind](broken)
+
+
+@pytest.mark.parametrize(("more", "whole"), [(0, True), (3, True), (4, False), (7, False)])
+def test_three_bytes_at_most_stand_behind_a_message(more, whole):
+    raw = bytes(STORE.serialize_cdr(MESSAGES.make(FLOAT64, data=7.0), FLOAT64)) + bytes(more)
+    if whole:
+        assert READERS[FLOAT64](raw).data == 7.0
+    else:
+        with pytest.raises(ValueError, match=f"{12 + more} bytes where the message has 12"):
+            READERS[FLOAT64](raw)

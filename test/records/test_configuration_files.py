@@ -6,9 +6,12 @@ import yaml
 
 from winch_friction.physics.channels import CM3_PER_REV, RPM
 from winch_friction.physics.errors import InputError
+from winch_friction.physics.friction import FrictionModel
+from winch_friction.physics.friction.table import Table, tabulated
 from winch_friction.records import strict_yaml
 from winch_friction.records.crane_file import crane_from_content, load_crane
 from winch_friction.records.model_file import load_model, model_from_text, model_to_text, save_model
+from winch_friction.records.schemas import DECLARED, problems, with_all_problems
 from winch_friction.records.strict_yaml import config_directory, parse_yaml, read_yaml
 
 MODELS = sorted(path.stem for path in (config_directory() / "models").glob("*.yaml"))
@@ -296,3 +299,86 @@ def test_a_number_and_an_entry_without_a_value_are_no_decimal_comma():
     with pytest.raises(InputError) as caught:
         crane_from_content(parse_yaml(text, "crane.yaml"), "crane.yaml")
     assert "decimal" not in str(caught.value)
+
+
+# -- what a schema finds besides
+@pytest.mark.parametrize(
+    ("kind", "change", "said"),
+    [
+        ("crane", {"inertia": 0}, "inertia: must be above 0, found 0"),
+        ("crane", {"gear_ratio": -3}, "gear_ratio: must be above 0, found -3"),
+        ("crane", {"rated_load": 0}, "rated_load: must be above 0, found 0"),
+        ("crane", {"wire_mass": "heavy"}, "wire_mass: must be a number in kg/m, or {value, unit}, found 'heavy'"),
+        ("crane", {"gear_ratio": "much"}, "gear_ratio: must be a number, or {value, unit}, found 'much'"),
+        ("crane", {"groups": {"main": 0}}, "groups.main: 0 is less than the minimum of 1"),
+        ("crane", {"groups": {"main": "two"}}, "groups.main: must be a whole number, found 'two'"),
+        ("crane", {"name": 3}, "name: must be a text, found 3"),
+        ("crane", {"colour": "red"}, "unknown key 'colour'; known keys are schema, name, drive"),
+        ("crane", {"drum": {}}, "drum: key 'layer_radii' is missing"),
+        ("crane", {"inertia": None}, "key 'inertia' is missing"),
+        ("model", {"terms": "coulomb"}, "terms: must be a list [...], found 'coulomb'"),
+        ("model", {"parameters": []}, "parameters: must be a mapping of keys, found []"),
+    ],
+)
+def test_a_schema_says_where_and_what_is_wrong(kind, change, said):
+    name, folder = {"crane": ("crane_150t", "cranes"), "model": ("a6vm215_crane2", "models")}[kind]
+    data = {key: value for key, value in (content(name, folder) | change).items() if value is not None}
+    found = problems(data, DECLARED[kind])
+    assert len(found) == 1
+    assert found[0].startswith(said)
+
+
+def test_a_whole_file_breaks_no_schema():
+    assert problems(content("crane_150t", "cranes"), DECLARED["crane"]) == []
+    assert all(problems(content(name), DECLARED["model"]) == [] for name in MODELS)
+
+
+@pytest.mark.parametrize(
+    ("name", "taken"), [("main", True), ("a_2", True), ("2a", False), ("_a", False), ("a-b", False)]
+)
+def test_a_group_has_a_name_that_a_topic_can_have(name, taken):
+    assert (problems(content("crane_150t", "cranes") | {"groups": {name: 2}}, DECLARED["crane"]) == []) is taken
+
+
+@pytest.mark.parametrize(("count", "told", "more"), [(2, 2, ""), (12, 12, ""), (15, 12, "f: ... and 3 more")])
+def test_a_dozen_problems_are_told_behind_the_readers_own_and_how_many_more(count, told, more):
+    data = content("crane_150t", "cranes") | {f"odd_{k}": 1 for k in range(count)}
+    said = with_all_problems(InputError("f: the first"), data, "crane", "f").problems
+    assert said[0] == "f: the first"
+    assert sum("unknown key 'odd_" in each for each in said) == told
+    assert (said[-1] if more else "") == more
+
+
+def test_what_the_reader_has_said_is_not_said_again():
+    data = content("crane_150t", "cranes") | {"inertia": 0, "rated_load": 0, "colour": 1}
+    first = InputError("f: inertia must be above 0 kg*m^2", "f: unknown key 'colour'")
+    assert with_all_problems(first, data, "crane", "f").problems == (
+        *first.problems, "f: rated_load: must be above 0, found 0",
+    )  # fmt: skip
+    assert str(with_all_problems(first, [1], "crane", "f")).endswith(": is this a crane file?")
+
+
+# -- bounds of a parameter
+@pytest.mark.parametrize(
+    ("given", "bounds"),
+    [({"upper": 5}, (-1e4, 5.0)), ({"lower": -5}, (-5.0, 1e4)), ({"lower": -2, "upper": 3}, (-2.0, 3.0)),
+     ({}, (-1e4, 1e4))],
+)  # fmt: skip
+def test_a_bound_that_is_not_given_is_the_declared_one(given, bounds):
+    """Of a torque that may have either sign."""
+    entry = {"value": 1.0, "unit": "N*m"} | given
+    own = {"schema": "winch_friction.model/1", "name": "m", "terms": ["torque_offset"], "parameters": {"T_0": entry}}
+    assert model_from_text(yaml.safe_dump(own)).bounds_of("T_0") == bounds
+
+
+@pytest.mark.parametrize(
+    ("bounds", "written"),
+    [((float("-inf"), 5.0), {"upper": 5.0}), ((-5.0, float("inf")), {"lower": -5.0}),
+     ((float("-inf"), float("inf")), {}), ((-5.0, 5.0), {"lower": -5.0, "upper": 5.0})],
+)  # fmt: skip
+def test_a_bound_is_written_where_there_is_one(bounds, written):
+    term = tabulated(Table("t", (("wire_out", (0.0, 1.0)),)))
+    model = FrictionModel("m", (term,), (2.0, 1.0), bounds={"t_0": bounds})
+    entry = yaml.safe_load(model_to_text(model))["parameters"]["t_0"]
+    assert entry == {"value": 2.0, "unit": "N*m"} | written
+    assert model_from_text(model_to_text(model)).bounds_of("t_0") == bounds

@@ -9,8 +9,11 @@ from winch_friction.physics.channels import BAR, CM3_PER_REV
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.friction.correction import Correction
 from winch_friction.physics.friction.declared_correction import DECLARED
+from winch_friction.physics.friction.table import tabulated
+from winch_friction.physics.friction.term import Scope
+from winch_friction.records.corrections import corrections_content, read_tables, tables_content
 from winch_friction.records.model_file import load_model, model_from_text, model_to_text, save_model
-from winch_friction.records.strict_yaml import config_directory
+from winch_friction.records.strict_yaml import Section, config_directory
 
 
 def every_correction():
@@ -90,3 +93,53 @@ def test_what_is_not_a_correction_is_refused_in_one_line(section, message):
     with pytest.raises(InputError, match=message) as error:
         model_from_text(with_section(section), "model.yaml")
     assert "\n" not in str(error.value)
+
+
+def test_a_window_may_stay_open_to_its_end_alone():
+    entry = {"value": 1.5, "unit": "bar", "during": [[0, 10], [20, float("inf")]]}
+    (found,) = model_from_text(with_section({"pressure_offset": entry})).corrections
+    assert found.during == ((0.0, 10.0), (20.0, float("inf")))
+    with pytest.raises(InputError, match="during must be a finite number"):
+        model_from_text(with_section({"pressure_offset": entry | {"during": [[float("-inf"), 10]]}}))
+
+
+@pytest.mark.parametrize(
+    ("entry", "said"),
+    [
+        ({"groups": ["active", "active"]}, "groups must be a list of different motor groups"),
+        ({"groups": [1]}, "groups must be a list of different motor groups"),
+        ({"layers": [True]}, "layers must be a list of different wire layers, from 1"),
+    ],
+)
+def test_what_a_correction_is_tied_to_stands_once_by_its_kind(entry, said):
+    name = "layer_radius" if "layers" in entry else "pressure_offset"
+    unit = "mm" if "layers" in entry else "bar"
+    with pytest.raises(InputError, match=said):
+        model_from_text(with_section({name: {"value": 1.0, "unit": unit} | entry}))
+
+
+def test_where_a_bend_begins_may_be_in_any_unit_of_its_channel():
+    entry = {"value": 2, "unit": "%", "beyond": {"value": 150, "unit": "bar"}}
+    (found,) = model_from_text(with_section({"pressure_bend": entry})).corrections
+    assert (found.value, found.beyond) == pytest.approx((0.02, 150e5))
+    assert corrections_content([found])["pressure_bend"]["beyond"] == {"value": pytest.approx(150e5), "unit": "Pa"}
+
+
+def test_a_table_that_says_its_knots_unit_and_scope_alone_is_free_and_opposes_the_motion():
+    given = {"tables": {"t": {"knots": {"wire_out": [0, 100]}, "unit": "N*m", "scope": "shaft"}}}
+    term = read_tables(Section(given, "file"))["t"]
+    table = term.table
+    assert (table.opposing, table.shape, table.anchor, table.typical) == (True, "free", "none", 1.0)
+    assert (table.place, table.source, table.side, table.weights, table.times) == (
+        "gear and drum", "tabulated", "both", (), (),
+    )  # fmt: skip
+    assert (term.opposing, term.place, term.scope) == (True, "gear and drum", Scope.SHAFT)
+
+
+def test_what_a_table_says_of_itself_is_taken():
+    said = {
+        "knots": {"pressure": [1e6, 2e7]}, "unit": "Pa", "times": ["displacement"], "scope": "motor", "opposing": False,
+        "shape": "rising", "anchor": "low", "typical": 3.0, "place": "motor", "source": "a test", "side": "lowering",
+    }  # fmt: skip
+    table = read_tables(Section({"tables": {"t": said}}, "file"))["t"].table
+    assert tables_content((tabulated(table),)) == {"t": said}

@@ -142,3 +142,69 @@ def test_other_conventions_are_refused(settings, said):
 def test_a_group_that_is_named_twice_is_refused():
     with pytest.raises(InputError, match="'active' is named twice in groups: active, active"):
         crane_topics(load_crane("crane_150t"), ("active", "active"))
+
+
+# -- numbers by hand
+def joints(**values):
+    base = {"position": [], "velocity": [], "effort": []}
+    return SimpleNamespace(**base | {"name": list(values)} | {key: list(each) for key, each in zip(
+        ("position", "velocity", "effort"), zip(*values.values(), strict=True), strict=True)})  # fmt: skip
+
+
+BY_DRUM = {"speed_joint": "winch_drum", "gear_ratio": 50.0}
+
+
+@pytest.mark.parametrize(
+    ("conventions", "names", "reference"),
+    [
+        ({"gear_ratio": 50.0}, {"winch_motor": 3.0}, 3.0), ({"gear_ratio": 50.0}, {"winch_drum": 3.0}, 150.0),
+        (BY_DRUM, {"winch_motor": 3.0}, 3.0), (BY_DRUM, {"winch_drum": 3.0, "winch_motor": 4.0}, 4.0),
+        (BY_DRUM, {"boom": 3.0}, None),
+    ],
+)  # fmt: skip
+def test_a_command_is_one_of_the_motor_whichever_joint_it_names(conventions, names, reference):
+    message = joints(**{name: (0.0, value, 0.0) for name, value in names.items()})
+    read = TopicMap(groups=(), **conventions).inputs["winch/reference"].decode(message)
+    assert read.get("speed_reference") == reference
+
+
+def test_a_drum_that_turns_slower_pulls_harder_by_the_gear():
+    message = joints(winch_drum=(2.0, 3.0, 1000.0))
+    read = TopicMap(groups=(), **BY_DRUM).inputs["winch/joint_states"].decode(message)
+    assert read == {"motor_speed": 150.0, "shaft_angle": 100.0, "motor_torque": 20.0}
+
+
+@pytest.mark.parametrize(
+    ("conventions", "channel", "sent", "read"),
+    [
+        ({"pressure_reference": "absolute"}, "aft.pressure_a", 1e7, 1e7 - 101325.0),
+        ({"pressure_reference": "absolute"}, "aft.pressure_b", 1e7, 1e7 - 101325.0),
+        ({}, "aft.pressure_a", 1e7, 1e7),
+        ({"max_displacement": 4e-5}, "aft.displacement", 0.5, 2e-5),
+        ({"displacement_unit": "m3_per_rad", "max_displacement": 4e-5}, "aft.displacement", 2e-5, 2e-5),
+        ({}, "oil_temperature", 41.0, 41.0),
+        ({"gear_ratio": 50.0}, "motor_speed", 3.0, 3.0),
+        (BY_DRUM, "motor_speed", 3.0, 150.0),
+        (BY_DRUM, "speed_reference", 3.0, 3.0),
+        (BY_DRUM, "hook_load", 3.0, 3.0),
+    ],
+)
+def test_a_plain_number_means_what_its_message_would(conventions, channel, sent, read):
+    topics = TopicMap(groups=("fore", "aft"), float64_channels=(channel,), **conventions)
+    (source,) = [each for each in topics.inputs.values() if channel in each.channels]
+    assert (source.type_name, source.stamped, source.channels) == (FLOAT64, False, (channel,))
+    assert source.decode(SimpleNamespace(data=sent)) == {channel: pytest.approx(read)}
+
+
+def test_each_group_has_a_joint_of_its_own():
+    topics = TopicMap(groups=("fore", "aft"), max_displacement=4e-5)
+    assert [topics.swash_of(group) for group in topics.groups] == ["fore_swash", "aft_swash"]
+    message = joints(fore_swash=(0.25, 0.0, 0.0), aft_swash=(0.75, 0.0, 0.0))
+    assert topics.inputs["winch/aft/displacement"].decode(message) == {"aft.displacement": pytest.approx(3e-5)}
+    assert TopicMap(swash_joint="swash").swash_of("aft") == "swash"
+
+
+def test_a_group_that_the_crane_has_not_has_no_topics():
+    with pytest.raises(InputError, match="has no motor group 'port'"):
+        crane_topics(load_crane("crane_150t"), ("port",))
+    assert crane_topics(load_crane("emps"), ("port",)).groups == ()

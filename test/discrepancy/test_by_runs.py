@@ -164,6 +164,19 @@ def test_an_error_of_one_driving_group_is_taken_where_it_closes_the_gap(monkeypa
     assert asked == [("one",), ("every", "one")][: two * (1 if taken else 2)]
 
 
+def test_an_error_of_one_driving_group_that_does_not_show_is_not_asked_beside_everything_else(monkeypatch):
+    """A second search of everything takes as long as the first."""
+    asked = []
+    nothing = SimpleNamespace(selection=SimpleNamespace(found=()))
+    monkeypatch.setattr(again, "of_one_group", lambda runs: ["one"])
+    monkeypatch.setattr(again, "every_candidate", lambda *_: ("every",))
+    monkeypatch.setattr(again, "search_runs", lambda study, given: asked.append(study.options.candidates) or nothing)
+    before = trial(UNEXPLAINED)
+    before.search.given = SimpleNamespace(prepared=(), model=None)
+    assert again.by_groups(STUDY, before) is before
+    assert asked == [("one",)]
+
+
 @pytest.mark.parametrize(("names", "other", "taken", "asked"), [
     ("ab", trial(MISSING, FLOOR, FLOOR), True, 1),
     ("ab", trial(MISSING, FLOOR, FLOOR, names="cd"), False, 1),  # as many names

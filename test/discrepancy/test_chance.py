@@ -315,6 +315,24 @@ def test_the_four_that_leave_least_are_looked_at_closer():
     assert [slot.name for slot in near(cross, cross.explain((A,)))] == ["no 4", "no 2", "no 5", "no 3"]
 
 
+def test_other_laws_of_the_same_cause_are_looked_at_closer_and_its_curves_are_not():
+    """A grid of octaves may lie well for one law and badly for the true one: a Gauss curve at 23 rad/s, of which 16 and
+    32 were asked, left more than a Lorentz curve, and was never asked between them."""
+    laws = [replace(A, law=f"law {k}", columns=(k,)) for k in range(1, 7)]
+    curve = replace(A, law="curve", columns=(7,), free=True)
+    losses = dict(zip([*laws, curve], (30.0, 15.0, 60.0, 12.0, 20.0, 25.0, 11.0), strict=True))
+    cross = crossed({(): 100.0, (A,): 10.0, (B,): 40.0, **{(law,): n for law, n in losses.items()}}, (A, B, *losses))
+    closer = [(slot.name, slot.law) for slot in near(cross, cross.explain((A,)))]
+    assert closer == [(A.name, f"law {k}") for k in (4, 2, 5, 6)] + [(B.name, B.law)]
+
+
+def test_what_stands_beside_an_effect_is_no_law_of_its_own():
+    """Of two effects the laws of each are asked in its own place."""
+    law = replace(A, law="law", columns=(2,))
+    cross = crossed({(): 100.0, (A,): 50.0, (B,): 60.0, (A, B): 10.0, (B, A): 10.0, (B, law): 15.0}, (A, B, law))
+    assert [(slot.name, slot.law) for slot in near(cross, cross.explain((A, B)))] == [(A.name, "law")]
+
+
 @pytest.mark.parametrize(("loss", "taken"), [(72.0, True), (74.0, False)])
 def test_a_good_part_of_a_gap_is_one_of_what_lies_above_the_floor(monkeypatch, loss, taken):
     """Three tenths of the 90 above a floor of 10 are 27."""

@@ -140,15 +140,20 @@ def _near_curve(cross: CrossFit, trial: Explanation, current: Explanation, witho
 
 def near(cross: CrossFit, current: Explanation) -> list[Slot]:
     """What stands in for one of a set's effects nearly as well: worth a closer look at its shape before it is said not
-    to be a rival."""
+    to be a rival, and of the effect's own cause before another law of it is said to be the worse one."""
     found: list[Slot] = []
-    for k in (k for k, slot in enumerate(current.slots) if not slot.plain):  # what is plain comes first anyhow
+    for k, taken in enumerate(current.slots):
+        if taken.plain:  # it comes first anyhow
+            continue
         rest = current.slots[:k] + current.slots[k + 1 :]
         without = cross.explain(rest)
         worth = without.loss - current.loss
-        trials = [cross.explain((*rest, slot)) for slot in fitted(cross, rest, current.names)]
+        trials = [cross.explain((*rest, slot)) for slot in fitted(cross, rest, {each.name for each in rest})]
         trials = [each for each in trials if without.loss - each.loss >= LIMITS.rival_worth * worth]
-        found += [each.slots[-1] for each in sorted(trials, key=lambda one: one.loss)[: LIMITS.looked_at_closer]]
+        as_good = [each.slots[-1] for each in sorted(trials, key=lambda one: one.loss)]
+        own = [slot for slot in as_good if slot.name == taken.name and slot.law != taken.law and not slot.free]
+        others = [slot for slot in as_good if slot.name != taken.name]
+        found += own[: LIMITS.looked_at_closer] + others[: LIMITS.looked_at_closer]
     return found
 
 

@@ -139,6 +139,7 @@ def crossed(left, slots, floor=0.0):
 
     return SimpleNamespace(
         explain=explain, train_loss=lambda own: (left[tuple(own)], None), floor=floor,
+        excess=lambda found: found.loss - floor,
         problem=SimpleNamespace(slots=slots, grams=SimpleNamespace(count=np.ones(1))),
     )  # fmt: skip
 
@@ -324,6 +325,14 @@ def test_other_laws_of_the_same_cause_are_looked_at_closer_and_its_curves_are_no
     cross = crossed({(): 100.0, (A,): 10.0, (B,): 40.0, **{(law,): n for law, n in losses.items()}}, (A, B, *losses))
     closer = [(slot.name, slot.law) for slot in near(cross, cross.explain((A,)))]
     assert closer == [(A.name, f"law {k}") for k in (4, 2, 5, 6)] + [(B.name, B.law)]
+
+
+@pytest.mark.parametrize(("left", "closer"), [(0.3, []), (0.4, ["law"])])
+def test_a_law_that_leaves_but_noise_has_no_better_one_of_its_cause(left, closer):
+    """A true Walther oil was called an oil of another reference temperature, which fits the noise a little better."""
+    law = replace(A, law="law", columns=(2,))
+    cross = crossed({(): 100.0, (A,): 5.0 + left, (law,): 15.0}, (A, law), floor=5.0)
+    assert [slot.law for slot in near(cross, cross.explain((A,)))] == closer
 
 
 def test_what_stands_beside_an_effect_is_no_law_of_its_own():

@@ -140,7 +140,9 @@ def _near_curve(cross: CrossFit, trial: Explanation, current: Explanation, witho
 
 def near(cross: CrossFit, current: Explanation) -> list[Slot]:
     """What stands in for one of a set's effects nearly as well: worth a closer look at its shape before it is said not
-    to be a rival, and of the effect's own cause before another law of it is said to be the worse one."""
+    to be a rival, and of the effect's own cause, where more than noise is left, before another law of it is said to be
+    the worse one."""
+    leaves = cross.excess(current) > LIMITS.least_excess
     found: list[Slot] = []
     for k, taken in enumerate(current.slots):
         if taken.plain:  # it comes first anyhow
@@ -153,7 +155,8 @@ def near(cross: CrossFit, current: Explanation) -> list[Slot]:
         as_good = [each.slots[-1] for each in sorted(trials, key=lambda one: one.loss)]
         own = [slot for slot in as_good if slot.name == taken.name and slot.law != taken.law and not slot.free]
         others = [slot for slot in as_good if slot.name != taken.name]
-        found += own[: LIMITS.looked_at_closer] + others[: LIMITS.looked_at_closer]
+        found += own[: LIMITS.looked_at_closer] if leaves else []
+        found += others[: LIMITS.looked_at_closer]
     return found
 
 

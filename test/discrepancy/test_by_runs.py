@@ -199,6 +199,31 @@ def test_an_error_of_one_driving_group_that_leaves_no_more_outdoes_several_names
     assert len(calls) == asked
 
 
+@pytest.mark.parametrize(("kind", "names", "asked"), [
+    (UNEXPLAINED, "", True), (AMBIGUOUS, "ab", True), (MISSING, "ab", True), (MISSING, "a", False),
+])  # fmt: skip
+def test_what_has_several_names_is_held_against_an_error_of_one_group_as_what_has_none(monkeypatch, kind, names, asked):
+    before, calls = trial(kind, FLOOR, FLOOR, names=names), []
+    monkeypatch.setattr(again, "by_groups", lambda study, found: calls.append(found) or found)
+    monkeypatch.setattr(again, "without_implausible", lambda study, found, _: found)
+    monkeypatch.setattr(again, "by_beyond", lambda study, found, _: (study, found))
+    monkeypatch.setattr(workflow, "_with_other_runs", lambda study, found: (study, found))
+    monkeypatch.setattr(workflow, "_surfaces_may_say_more", lambda search: False)
+    monkeypatch.setattr(workflow, "swings", lambda given: False)
+    study = SimpleNamespace(options=SimpleNamespace(candidates=(), told=lambda what: None))
+    assert workflow._once_more(study, None, before, before.search)[1] is before
+    assert calls == [before] * asked
+
+
+def test_another_law_for_what_is_too_large_is_not_asked_of_what_has_names(monkeypatch):
+    monkeypatch.setattr(again, "search_runs", lambda *_: pytest.fail("searched"))
+    before = trial(MISSING, FLOOR, FLOOR, names="ab")
+    final = SimpleNamespace(slots=[SimpleNamespace(name="pressure_scale", law="")])
+    first = SimpleNamespace(selection=SimpleNamespace(final=final), cross=SimpleNamespace(at_bound=lambda *_: True))
+    monkeypatch.setattr(again, "every_candidate", lambda *_: ())
+    assert again.without_implausible(STUDY, before, first) is before
+
+
 @pytest.mark.parametrize(("other", "too_large", "taken"), FURTHER)
 def test_what_one_law_does_by_an_implausible_size_another_may_do_by_its_own(monkeypatch, other, too_large, taken):
     """The law that was too large is not asked again, its cause by another law is."""

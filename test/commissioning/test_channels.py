@@ -7,7 +7,13 @@ import pytest
 
 from winch_friction.api.work import simulate
 from winch_friction.commissioning.balance import _top
-from winch_friction.commissioning.channels import clock_findings, frozen_findings, runs_say, told_slow_clock
+from winch_friction.commissioning.channels import (
+    clock_findings,
+    frozen_findings,
+    runs_say,
+    told_slow_clock,
+    uneven_once,
+)
 from winch_friction.commissioning.check import quick_check
 from winch_friction.commissioning.commissioning import check
 from winch_friction.commissioning.excitation import Taught
@@ -54,6 +60,21 @@ def test_a_log_too_slow_for_reversals_is_worth_a_word(rate, found):
 def test_a_gap_and_an_uneven_clock_are_said():
     assert said(np.concatenate([np.arange(100) * 0.02, 5.0 + np.arange(100) * 0.02])) == {"gaps": "note"}
     assert said(np.cumsum(np.resize([0.02, 0.02, 0.02, 0.04], 400))) == {"jitter": "warning"}
+
+
+def test_an_uneven_clock_of_many_runs_is_said_once():
+    """A logger that is uneven is so in every run: a line for each buries what else there is to say."""
+    steps = np.resize([0.02, 0.02, 0.02, 0.04], 400)
+    runs = [Run(name, {"time": np.cumsum(steps) * (1.0 + k)}) for k, name in enumerate("abc")]
+    even = Run("d", {"time": np.arange(500) * 0.02})
+    each = [found for run in (*runs, even) for found in clock_findings(run)]
+    (found,) = uneven_once(each, 4)
+    assert (found.severity, found.cause, found.runs) == ("warning", "jitter", ("a", "b", "c"))
+    assert (
+        found.sentence == "3 of 4 runs (a, b, c) have an uneven clock: one step in ten is 100 % or more off the usual"
+    )
+    assert uneven_once(each[:1], 4) == each[:1]
+    assert uneven_once([], 4) == []
 
 
 def frozen(held, other, displacement=(3e-5, 3e-5)):

@@ -1,6 +1,6 @@
 """What the runs must hold before anything is searched: both directions, enough of a log, and what is left out."""
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -25,6 +25,7 @@ from winch_friction.discrepancy.next_experiment import (
     of_levels,
     of_own_terms,
     of_runs,
+    of_unexplained,
     of_wire,
     supplying,
     with_what_was_seen,
@@ -228,6 +229,25 @@ def test_of_loads_that_are_off_by_another_amount_in_each_run_is_said_to_weigh_th
     one_way = left_of(trained, friction)
     one_way.blocks.direction = np.ones(len(one_way.after))
     assert of_levels([one_way] * 2) == []  # nobody tells such a level from friction
+
+
+@dataclass(frozen=True)
+class Unexplained:
+    train: SimpleNamespace
+    holdout: SimpleNamespace
+    depends: tuple[str, ...] = ("oil_temperature",)
+
+
+@pytest.mark.parametrize(("friction", "signals"), [(0.0, ()), (0.5, ("oil_temperature",))])
+def test_levels_of_runs_depend_on_no_signal(friction, signals):
+    """What is steady within each run tells runs apart, and so imitates any level of theirs."""
+    sides = [left_of(levels, friction) for levels in ((0.5, -0.6, 0.8, -0.3), (0.2, 0.15))]
+    for side in sides:
+        side.most_left_first = {}
+    given = SimpleNamespace(prepared=[], crane=SimpleNamespace(wire_stiffness=np.nan))
+    found, notes = of_unexplained(Unexplained(*sides), given)
+    assert found.depends == signals
+    assert len(notes) == (not signals)
 
 
 @pytest.mark.parametrize(("share", "kept"), [(0.2, False), (0.8, True)])

@@ -1,6 +1,6 @@
 """Parts of a balance by figures: pressures that a torque takes, what hangs on which radius, and how it swings."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -37,6 +37,15 @@ def test_the_driving_group_has_the_pressure_that_the_torque_takes_beside_the_pas
     # port A and port B: the higher one is the drop above the lower
     assert driving.pressure_sum == pytest.approx(np.abs(driving.pressure) + 2e6)
     assert passive is groups[1]
+
+
+def test_motors_that_are_swung_back_have_the_pressure_that_is_logged():
+    """Next to no stroke tells nothing of the pressure: of a drive that sets its torque by the stroke it would be
+    thousands of bar, and each step of the fixed point would multiply what friction grows with it."""
+    own = replace(group("main", True, drop=3e7), displacement=np.array([3e-5, 3e-6, -3e-7]))
+    (found,) = balance.with_predicted_pressure((own,), 60.0 * ONE, 4e-6)
+    assert found.pressure == pytest.approx(np.array([1e6, 3e7, 3e7]))
+    assert found.pressure_sum == pytest.approx(found.pressure + 2e6)
 
 
 def test_an_error_of_the_passive_pressures_is_taken_out_of_them_alone():

@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from winch_friction.discrepancy import again, workflow
+from winch_friction.discrepancy import again, next_experiment, workflow
 from winch_friction.discrepancy.answer import AMBIGUOUS, MISSING, NOTHING, UNEXPLAINED, GapOptions
 from winch_friction.discrepancy.run_states import EACH_RUN
 from winch_friction.discrepancy.search import Study
@@ -70,9 +70,9 @@ def test_it_is_asked_where_nothing_else_explains(monkeypatch, first, left_by_law
     )  # fmt: skip
     monkeypatch.setattr(workflow, "adequacy", adequacy)
     monkeypatch.setattr(workflow, "completed", lambda model, crane: model)
-    monkeypatch.setattr(workflow, "of_wire", lambda *_: [])
-    monkeypatch.setattr(workflow, "of_runs", lambda *_: [])
-    monkeypatch.setattr(workflow, "of_levels", lambda *_: [])
+    monkeypatch.setattr(next_experiment, "of_wire", lambda *_: [])
+    monkeypatch.setattr(next_experiment, "of_runs", lambda *_: [])
+    monkeypatch.setattr(next_experiment, "of_levels", lambda *_: [])
     monkeypatch.setattr(workflow, "against_simulations", lambda runs, model, crane: list(runs))
     monkeypatch.setattr(workflow, "lock_holdout", lambda *_: SimpleNamespace(runs=runs, train=(), holdout=()))
     monkeypatch.setattr(workflow, "meet", lambda *_: None)

@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from winch_friction.discrepancy import again, workflow
+from winch_friction.discrepancy import again, next_experiment, workflow
 from winch_friction.discrepancy.answer import AMBIGUOUS, MISSING, NOTHING, UNEXPLAINED, GapOptions
 from winch_friction.discrepancy.search import Study
 from winch_friction.physics.signals import Run
@@ -127,9 +127,9 @@ def surrounded(monkeypatch, met, told=True):
     )  # fmt: skip
     monkeypatch.setattr(workflow, "adequacy", adequacy)
     monkeypatch.setattr(workflow, "completed", lambda model, crane: model)
-    monkeypatch.setattr(workflow, "of_wire", lambda *_: ["how long is the wire"])
-    monkeypatch.setattr(workflow, "of_runs", lambda sides: [f"which of {len(sides)} sides"])
-    monkeypatch.setattr(workflow, "of_levels", lambda *_: [])
+    monkeypatch.setattr(next_experiment, "of_wire", lambda *_: ["how long is the wire"])
+    monkeypatch.setattr(next_experiment, "of_runs", lambda sides: [f"which of {len(sides)} sides"])
+    monkeypatch.setattr(next_experiment, "of_levels", lambda *_: [])
     monkeypatch.setattr(workflow, "not_borne_out", lambda search, stands: [f"{search.kind} at first"])
     monkeypatch.setattr(workflow, "against_simulations", lambda runs, model, crane: list(runs))
     monkeypatch.setattr(workflow, "lock_holdout", lambda runs, share, rng: split)

@@ -83,6 +83,7 @@ UNIX = (6.3e8, 2.6e9)  # s since 1970, years 1990 to 2052
 SLOW_STEP = 2.0  # s; in ms the step of a log with 500 Hz
 THOUSANDTH = (4e-4, 2.5e-3)  # of the speed, as a channel tells it that is sampled coarsely
 UNEVEN = 0.3  # of the usual step: scatter of the steps beyond which the clock is worth a word
+UNEVEN_CLOCK = "jitter"  # its cause
 
 FROZEN_SPEED, FROZEN_SAMPLES, FROZEN_SWIVEL = 5.0, 100, 0.02  # rad/s both ways; samples; relative span
 
@@ -105,11 +106,24 @@ def clock_findings(run: Run) -> Iterator[Finding]:
     scatter = float(np.percentile(np.abs(steps - usual), 90)) / usual
     if scatter > UNEVEN:
         said = f"{run.name}: uneven clock: one step in ten is {100 * scatter:.0f} % or more off the usual {usual:.3g} s"
-        yield Finding("warning", "jitter", said, "time", (run.name,), {"scatter": scatter})
+        yield Finding("warning", UNEVEN_CLOCK, said, "time", (run.name,), {"scatter": scatter})
     gaps = steps[steps > GAP * usual]
     if gaps.size:
         said = f"{run.name}: {counted(gaps.size, 'gap', 'gaps')} in time, the widest {gaps.max():.3g} s"
         yield Finding("note", "gaps", said, "time", (run.name,), {"count": int(gaps.size), "widest": float(gaps.max())})
+
+
+def uneven_once(findings: Sequence[Finding], total: int) -> list[Finding]:
+    """Findings of the clocks of so many runs, in one line where several are uneven: the logger is."""
+    uneven = [each for each in findings if each.cause == UNEVEN_CLOCK]
+    if len(uneven) < 2:
+        return list(findings)
+    names = tuple(name for each in uneven for name in each.runs)
+    least = min(each.evidence["scatter"] for each in uneven)
+    who = runs_say(names, total, "have")
+    said = f"{who} an uneven clock: one step in ten is {100 * least:.0f} % or more off the usual"
+    once = Finding("warning", UNEVEN_CLOCK, said, "time", names, {"scatter": least})
+    return [*(each for each in findings if each.cause != UNEVEN_CLOCK), once]
 
 
 def _unix_unit(time: FloatArray) -> str:

@@ -22,6 +22,7 @@ from winch_friction.commissioning.channels import (
     reading_findings,
     runs_say,
     told_slow_clock,
+    uneven_once,
 )
 from winch_friction.commissioning.diagnose import diagnose
 from winch_friction.commissioning.kinematics import Fit, agreements, fit_of, ways
@@ -239,7 +240,7 @@ def diagnosed(
 ) -> tuple[list[Finding], Fit]:  # fmt: skip
     """The findings of `quick_check` and how the runs fit: diagnosed where they are doubted or `ranked`."""
     others = cache(others)
-    clock = [finding for run in runs for finding in clock_findings(run)]
+    clock = uneven_once([finding for run in runs for finding in clock_findings(run)], len(runs))
     jumped = {name for finding in clock if finding.contradicts for name in finding.runs}
     usable = [run for run in runs if run.name not in jumped]
     own = model if model is not None and model.corrections else None

@@ -203,6 +203,14 @@ def of_levels(sides: Sequence[Side]) -> list[str]:
     ]
 
 
+def of_unexplained(result: GapResult, given: Given) -> tuple[GapResult, list[str]]:
+    """A result that nothing explains, and what is said of it. Where each run keeps a level of its own it depends on no
+    signal: what is steady within a run, such as the load or the oil's temperature, tells such levels by chance."""
+    sides = (result.train, result.holdout)
+    levels = of_levels(sides)
+    return replace(result, depends=()) if levels else result, of_wire(given) + of_runs(sides) + levels
+
+
 def of_own_terms(named: Collection[str], given: FrictionModel, written: FrictionModel) -> list[str]:
     """What becomes of a named law's term that the given model has already: it is not missing, but too small or too
     large."""

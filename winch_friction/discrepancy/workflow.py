@@ -28,10 +28,8 @@ from winch_friction.discrepancy.expansion import Given, meet, swings
 from winch_friction.discrepancy.next_experiment import (
     NextExperiment,
     insufficient,
-    of_levels,
     of_own_terms,
-    of_runs,
-    of_wire,
+    of_unexplained,
     plan_experiment,
     with_what_was_seen,
 )
@@ -105,7 +103,8 @@ def find_gap(runs: Sequence[Run], crane: Crane, model: FrictionModel, options: G
     if own := [name for each in result.effects if (name := each.law_name or each.name) in model.term_names]:
         notes += of_own_terms(own, model, result.model)
     if result.verdict == UNEXPLAINED:
-        notes += of_wire(given) + of_runs(sides := (result.train, result.holdout)) + of_levels(sides)
+        result, said = of_unexplained(result, given)
+        notes += said
     refuted = () if seed.refuted is None or explained(result.verdict, proposals) else (seed.refuted,)
     if refuted and result.verdict == UNEXPLAINED and far_off(result.holdout):
         refuted = ()  # its freed parameters leave what is plainly more than noise: they imitate something

@@ -27,6 +27,9 @@ SPARSEST = 0.055  # s; up to such a period a sea of four seconds and more still 
 # least noises to which a slower log is followed, and so what it closes to at best: a step of a 12-bit transducer
 SHOWS = 1.5
 FIXED_POINT_STEPS = 3  # the next ones change the predicted pressure by a millibar at most (16 runs of four winches)
+# of the largest displacement, from which on a torque tells the pressure: at 300 bar each step of the fixed point leaves
+# a fifth of what was wrong (2 K5 p/D); at a fiftieth of the stroke it leaves all, and below it makes more
+LEAST_STROKE = 0.1
 OPTIONAL = ("oil_temperature", "wire_layer", "wire_out")
 
 
@@ -44,14 +47,16 @@ def without_error(groups: Groups, error: FloatArray | float, of_stroke: FloatArr
     )
 
 
-def with_predicted_pressure(groups: Groups, torque: FloatArray) -> Groups:
-    """Groups of which the balancing one has the pressure that a drive torque (N m) at the shaft takes."""
+def with_predicted_pressure(groups: Groups, torque: FloatArray, least_stroke: float = 0.0) -> Groups:
+    """Groups of which the balancing one has the pressure that a drive torque (N m) at the shaft takes; where its
+    motors are swung below the `least_stroke` (m^3/rad), or past centre, the one that was measured."""
     rest = torque - hydraulic_torque((g.count, g.displacement, g.pressure) for g in groups if not g.balances)
-    return tuple(_loaded(g, rest) if g.balances else g for g in groups)
+    return tuple(_loaded(g, rest, least_stroke) if g.balances else g for g in groups)
 
 
-def _loaded(group: GroupSignals, torque: FloatArray) -> GroupSignals:
-    pressure = torque / (group.count * np.maximum(group.displacement, 1e-9))
+def _loaded(group: GroupSignals, torque: FloatArray, least_stroke: float) -> GroupSignals:
+    needed = torque / (group.count * np.maximum(group.displacement, 1e-9))
+    pressure = np.where(group.displacement < least_stroke, group.logged, needed)
     return replace(group, pressure=pressure, pressure_sum=np.abs(pressure) + 2.0 * group.low_pressure)
 
 
@@ -157,9 +162,9 @@ class Balancing:
     def _hydraulic(self, load: SuspendedLoad, frictionless: FloatArray) -> Balance:
         groups, measured = self.seen.measured
         groups = without_error(groups, self.accounted.passive_error, self.accounted.passive_stroke_error)
-        predicted = frictionless
+        predicted, least_stroke = frictionless, LEAST_STROKE * self.crane.max_displacement
         for _ in range(FIXED_POINT_STEPS):
-            groups = with_predicted_pressure(groups, predicted + self.accounted.missing_torque)
+            groups = with_predicted_pressure(groups, predicted + self.accounted.missing_torque, least_stroke)
             point = self._point(load, groups)
             states = self._states(point, len(groups))
             predicted = frictionless + self.model.torque(point, states)

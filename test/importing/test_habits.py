@@ -114,6 +114,23 @@ def test_a_byte_order_mark_is_no_part_of_a_name(tmp_path):
     assert read_text_log(tmp_path / "two.csv", {"encoding": "utf-8"}).columns[0].name == "t [s]"
 
 
+@pytest.mark.parametrize("first", ["cp1252", "utf-8"])
+@pytest.mark.parametrize("later", ["cp1252", "utf-8", "utf-16"])
+def test_a_later_log_of_a_set_may_have_another_encoding(tmp_path, first, later):
+    """Two programs, or versions, wrote the set: 'Seillänge' was not found beside 'SeillÃ¤nge', or no text at all."""
+    text = "\n".join(["Zeit [s];Seillänge [m]", *(f"{k};5" for k in range(50))])
+    (tmp_path / "one.csv").write_bytes(text.encode(first))
+    (tmp_path / "two.csv").write_bytes(text.encode(later))
+    (tmp_path / "other.csv").write_bytes(text.replace("Seil", "Kabel").encode(later))
+    settings = read_text_log(tmp_path / "one.csv").settings
+    made = LogMap({"wire_out": Entry("Seillänge [m]", "m")}, ("Zeit [s]",), log=settings)
+    assert len(open_with_map(tmp_path / "two.csv", made)) == 50
+    with pytest.raises(
+        InputError, match=r"other\.csv: (no column 'Seillänge \[m\]'|cannot be read as|no rows of numbers)"
+    ):
+        open_with_map(tmp_path / "other.csv", made)
+
+
 def test_rows_below_a_longer_preamble_are_found_by_the_same_map(tmp_path):
     rows = ["t [s],n [rpm]", *(f"{k},5" for k in range(50))]
     for name, preamble in (("one.csv", []), ("two.csv", ["crane 7", "logged by Kim"])):

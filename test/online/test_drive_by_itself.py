@@ -76,8 +76,12 @@ def test_one_of_two_groups_may_pull_the_load_down():
 
 def test_an_estimator_learns_nothing_of_them_nor_keeps_what_it_learned_before_it_was_sure():
     service = EstimatorService(CRANE, SEED, NORMAL, EstimatorConfig())
+    marks = []
     for sample in sea(18.0, lambda a, b: (b, a)):
-        service.take_row(sample)
+        said = service.take_row(sample)
+        marks.append((bool(service.contradiction), said.valid, service.valid(said)))
     assert service.contradiction == EXCHANGED_SAID
+    assert {(False, True, True), (True, True, False)} <= set(marks)  # a torque of pressures that are not believed
+    assert (True, True, True) not in marks
     assert service.model_due(1e9).values == SEED.values
     assert service.snapshot() == EstimatorService(CRANE, SEED, NORMAL).snapshot()

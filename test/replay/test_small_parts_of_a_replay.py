@@ -129,13 +129,16 @@ def test_every_phase_notes_what_it_refuses_in_the_one_list():
 
 
 @pytest.mark.parametrize(
-    ("accepted", "torque", "valid"),
-    [(True, 3.0, True), (False, 3.0, False), (True, float("nan"), False), (False, float("nan"), False)],
-)
-def test_an_answer_is_valid_where_it_was_taken_in_and_shows_a_torque(accepted, torque, valid):
+    ("accepted", "torque", "doubted", "valid"),
+    [
+        (True, 3.0, False, True), (True, 3.0, True, False), (False, 3.0, False, False),
+        (True, float("nan"), False, False), (False, float("nan"), False, False),
+    ],
+)  # fmt: skip
+def test_an_answer_is_valid_where_it_was_taken_in_and_shows_a_torque(accepted, torque, doubted, valid):
     model = SimpleNamespace(values=(1.0,), std=np.array([0.1]))
     record = EstimateRecord(SimpleNamespace(model=lambda: model, seed=SimpleNamespace(parameter_names=("k",))))
-    record.take(Estimate(0.5, accepted, "learning", 0.1, 0.2, 0.3, 1.0, 2.0, torque))
+    record.take(Estimate(0.5, accepted, "learning", 0.1, 0.2, 0.3, 1.0, 2.0, torque), doubted)
     run = record.run("r")
     assert run.aside["valid"].tolist() == [valid]
     names = ("time", "innovation", "innovation_variance", "nis", "speed", "drum_torque", "k", "k_std")

@@ -36,6 +36,11 @@ class Estimate(NamedTuple):
     drum_torque: float
     friction_torque: float
 
+    @property
+    def valid(self) -> bool:
+        """Whether the sample was taken in and shows a friction."""
+        return self.accepted and math.isfinite(self.friction_torque)
+
 
 @dataclass(frozen=True, slots=True)
 class ParameterEstimate:

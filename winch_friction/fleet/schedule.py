@@ -1,8 +1,10 @@
 """Work on Dask with back-pressure, in the order in which it ends."""
 
 import contextlib
+import signal
 from collections.abc import Callable, Iterator, Sequence
 from itertools import islice
+from multiprocessing import resource_tracker
 from typing import Any, TypeVar
 
 T = TypeVar("T")
@@ -24,7 +26,8 @@ def on_dask(
 
     with contextlib.ExitStack() as stack:
         local = {"n_workers": workers, "threads_per_worker": 1, "dashboard_address": None, "silence_logs": 40}
-        cluster = address or stack.enter_context(LocalCluster(**local))
+        with _interrupts_held():
+            cluster = address or stack.enter_context(LocalCluster(**local))
         client = stack.enter_context(Client(cluster, timeout=PATIENCE))
         waiting = iter(pieces)
 
@@ -37,3 +40,15 @@ def on_dask(
             future.release()
             for more in submitted(1):
                 ended.add(more)
+
+
+@contextlib.contextmanager
+def _interrupts_held() -> Iterator[None]:
+    """Ctrl-C goes to every process of a terminal: what begins meanwhile never hears it, and is ended by this process,
+    which hears it afterwards. Workers that heard it left a traceback each."""
+    resource_tracker.ensure_running()  # where it begins with the first process it lets SIGINT through again
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)

@@ -61,23 +61,26 @@ def import_log(path: Path, log_map: LogMap, crane: Crane | None) -> Run:
 
 
 def open_with_map(path: Path, log_map: LogMap) -> Log:
-    """A log read as the map says; rows that are elsewhere than it says (a longer preamble) are found."""
+    """A log read as the map says; rows that are elsewhere than it says (a longer preamble) are found, and so is
+    another encoding than that of the log which the map was made of."""
     wanted = {*log_map.time_from, *(e.source for e in log_map.columns.values() if not e.constant)}
-    clocks = {key: value for key, value in log_map.log.items() if key == "clocks"}
     kind = str(log_map.log.get("kind", "")) or ("workbook" if _is_kind(path, "workbook") else "text")
-    try:
-        log = read_log(path, log_map.log if _is_kind(path, kind) else clocks)
-        if wanted <= {column.name for column in log.columns}:
-            return log
-    except InputError:
-        if not log_map.log:
-            raise
-    kept = {key: value for key, value in log_map.log.items() if key in ("encoding", "delimiter", "sheet", "clocks")}
-    log = read_log(path, kept if _is_kind(path, kind) else clocks)
-    missing = wanted - {column.name for column in log.columns}
-    if missing:
+    kept = (*log_map.log,) if _is_kind(path, kind) else ("clocks",)
+    less = [key for key in kept if key in ("encoding", "delimiter", "sheet", "clocks")]
+    problems = []
+    for keys in dict.fromkeys((kept, tuple(less), tuple(key for key in less if key != "encoding"))):
+        try:
+            return _with_columns(read_log(path, {k: v for k, v in log_map.log.items() if k in keys}), wanted)
+        except InputError as error:
+            problems.append(error)
+    raise problems[min(1, len(problems) - 1)]  # the map's encoding, wherever its rows are
+
+
+def _with_columns(log: Log, wanted: set[str]) -> Log:
+    """The same log, which must have these columns."""
+    if missing := wanted - {column.name for column in log.columns}:
         raise InputError(
-            f"{path}: no column {listed(sorted(missing))}, which the map wants; "
+            f"{log.path}: no column {listed(sorted(missing))}, which the map wants; "
             f"found {listed(c.name for c in log.columns)}"
         )
     return log

@@ -147,11 +147,12 @@ class EstimatorNode(WinchNode):
             self._publish(estimate)
 
     def _publish(self, estimate: Estimate) -> None:
-        """One answer to each sample; of one that was not taken in it is not valid, and of one that shows no friction it
-        is zero: the torque before it would stand for as long as an input is lost."""
+        """One answer to each sample; of one that was not taken in, or whose inputs contradict each other, it is not
+        valid, and of one that shows no friction it is zero: the torque before it would stand for as long as an input
+        is lost."""
         self._answers += 1
         known = math.isfinite(estimate.friction_torque)
-        header = stamp_header(estimate.time, ROS, mark(known and estimate.accepted, self._answers))
+        header = stamp_header(estimate.time, ROS, mark(self.service.valid(estimate), self._answers))
         speed = estimate.speed if math.isfinite(estimate.speed) else 0.0
         torque = estimate.friction_torque if known else 0.0
         self._torque.publish(joint_state(ROS, header, "winch_motor", velocity=speed, effort=torque))

@@ -86,6 +86,11 @@ class EstimatorService:
         self._doubt(sample, self.last)
         return self.last
 
+    def valid(self, estimate: Estimate) -> bool:
+        """Whether the torque of what was said last may be believed: it shows friction, its sample was taken in, and
+        no inputs contradict each other. One of pressures in bar, or of what a wrong load cell taught, may not."""
+        return estimate.valid and not self.contradiction
+
     def tick(self, now: float) -> Estimate | None:
         """What is said once in every silence: that no friction is known. The torque before it would stand, whoever
         plots it or feeds it forward, of one direction through every wave."""

@@ -42,14 +42,14 @@ class EstimateRecord:
         self._look_of_row = array("q")
         self._looked_at = -math.inf
 
-    def take(self, estimate: Estimate) -> None:
-        """Add one answer."""
+    def take(self, estimate: Estimate, doubted: bool = False) -> None:
+        """Add one answer; `doubted`: its inputs contradict each other."""
         if not self._looked_at <= estimate.time < self._looked_at + self._period:
             self._looks.append(self._look())
             self._looked_at = estimate.time
         self._rows.extend(_numbers(estimate))
         self._states.append(estimate.state)
-        self._valid.append(estimate.accepted and math.isfinite(estimate.friction_torque))
+        self._valid.append(estimate.valid and not doubted)
         self.skip()
         self._numbers.append(self._number)
         self._look_of_row.append(len(self._looks) - 1)

@@ -130,5 +130,5 @@ class EstimatorVoice:
             yield self.service.model_due(sample.time)
 
     def _note(self, estimate: Estimate) -> None:
-        self.record.take(estimate)
+        self.record.take(estimate, bool(self.service.contradiction))
         self.lacked.update(filter(None, (*self.service.missing, self.service.contradiction)))

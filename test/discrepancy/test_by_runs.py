@@ -72,7 +72,7 @@ def test_it_is_asked_where_nothing_else_explains(monkeypatch, first, left_by_law
     monkeypatch.setattr(workflow, "completed", lambda model, crane: model)
     monkeypatch.setattr(next_experiment, "of_wire", lambda *_: [])
     monkeypatch.setattr(next_experiment, "of_runs", lambda *_: [])
-    monkeypatch.setattr(next_experiment, "of_levels", lambda *_: [])
+    monkeypatch.setattr(next_experiment, "levels_of", lambda *_: None)
     monkeypatch.setattr(workflow, "against_simulations", lambda runs, model, crane: list(runs))
     monkeypatch.setattr(workflow, "lock_holdout", lambda *_: SimpleNamespace(runs=runs, train=(), holdout=()))
     monkeypatch.setattr(workflow, "meet", lambda *_: None)

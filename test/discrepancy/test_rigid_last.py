@@ -129,7 +129,7 @@ def surrounded(monkeypatch, met, told=True):
     monkeypatch.setattr(workflow, "completed", lambda model, crane: model)
     monkeypatch.setattr(next_experiment, "of_wire", lambda *_: ["how long is the wire"])
     monkeypatch.setattr(next_experiment, "of_runs", lambda sides: [f"which of {len(sides)} sides"])
-    monkeypatch.setattr(next_experiment, "of_levels", lambda *_: [])
+    monkeypatch.setattr(next_experiment, "levels_of", lambda *_: None)
     monkeypatch.setattr(workflow, "not_borne_out", lambda search, stands: [f"{search.kind} at first"])
     monkeypatch.setattr(workflow, "against_simulations", lambda runs, model, crane: list(runs))
     monkeypatch.setattr(workflow, "lock_holdout", lambda runs, share, rng: split)

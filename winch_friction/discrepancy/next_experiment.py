@@ -157,6 +157,7 @@ def of_wire(given: Given) -> list[str]:
 
 
 NO_LOAD = 1.0  # N m at the shaft: an empty hook, of which no share is told by less
+MOST_BESIDE = 0.5  # of what is more than noise, squared: a gap that is mostly something else is no matter of levels
 APART = 2.0  # times what any other run keeps, from where on it is a matter of the runs
 
 
@@ -176,39 +177,61 @@ def of_runs(sides: Sequence[Side]) -> list[str]:
     ]
 
 
-def of_levels(sides: Sequence[Side]) -> list[str]:
-    """What is said of a gap that nothing explains where each run keeps a level of its own that acts one way whatever
-    the motion, and beside it no more than noise: a load or a zero that is off by another amount each time, no friction.
-    """
-    shares, gap = [], False
-    for side in sides:
-        beside, way = side.after.copy(), side.blocks.direction
+@dataclass(frozen=True)
+class Levels:
+    """A level of its own in each run that acts one way whatever the motion: a load or a zero that is off by another
+    amount each time, no friction."""
+
+    shares: tuple[float, ...]  # % of the run's load
+    beside: float  # of what the runs keep above the noise, squared, how much is something else
+
+    @property
+    def said(self) -> str:
+        """In words, with what to do about it."""
+        beside = (
+            "and no more than noise beside it: that is no friction"
+            if not self.beside
+            else f"which is no friction, and {100.0 * (1.0 - self.beside):.0f} % of what they keep above the noise "
+            "(squared): what else is missing shows once it is gone"
+        )
+        return (
+            f"each run keeps a level of its own that acts the same way hoisting and lowering, {min(self.shares):+.2g} "
+            f"to {max(self.shares):+.2g} % of its load, {beside}. Weigh each load (or log hook_load from a load cell) "
+            "and read the zeros before each run, then ask again"
+        )
+
+
+def levels_of(sides: Sequence[Side]) -> Levels | None:
+    """The levels that runs keep where nothing explains the gap, and either no more than noise is beside them, or less
+    than they are."""
+    shares: list[float] = []
+    kept, beside = (np.zeros(len(sides)) for _ in range(2))  # above the noise, squared
+    for j, side in enumerate(sides):
+        left, way = side.after.copy(), side.blocks.direction
         for k, run in enumerate(side.runs):
             own = side.blocks.run == k
             means = [float(side.after[own & (way == s)].mean()) for s in (1.0, -1.0) if np.any(own & (way == s))]
             if len(means) < 2:  # of one direction alone nobody tells a level from friction
                 continue
-            beside[own] -= np.mean(means)
+            left[own] -= np.mean(means)
             weight = float(np.median(np.abs(run.drum_torque))) / run.gear_ratio  # N m at the shaft
             shares.append(100.0 * float(np.mean(means)) * run.unit_torque / max(weight, NO_LOAD))
-        gap |= rms(side.after) > LIMITS.at_the_floor * side.floor
-        if rms(beside) > LIMITS.at_the_floor * side.floor:
-            return []
-    if not gap or len(shares) < LIMITS.fewest_levels or not min(shares) < 0.0 < max(shares):
-        return []
-    return [
-        f"each run keeps a level of its own that acts the same way hoisting and lowering, {min(shares):+.2g} to "
-        f"{max(shares):+.2g} % of its load, and no more than noise beside it: that is no friction. Weigh each load (or "
-        "log hook_load from a load cell) and read the zeros before each run, then ask again"
-    ]
+        noise = LIMITS.at_the_floor * side.floor
+        kept[j], beside[j] = (max(rms(each) ** 2 - noise**2, 0.0) for each in (side.after, left))
+    signed = len(shares) >= LIMITS.fewest_levels and min(shares) < 0.0 < max(shares)
+    if not kept.any() or not signed or beside.sum() > MOST_BESIDE * kept.sum():
+        return None
+    return Levels(tuple(shares), float(beside.sum() / kept.sum()))
 
 
 def of_unexplained(result: GapResult, given: Given) -> tuple[GapResult, list[str]]:
-    """A result that nothing explains, and what is said of it. Where each run keeps a level of its own it depends on no
-    signal: what is steady within a run, such as the load or the oil's temperature, tells such levels by chance."""
+    """A result that nothing explains, and what is said of it. Where each run keeps a level of its own alone it depends
+    on no signal: what is steady within a run, such as the load or the oil's temperature, tells levels by chance."""
     sides = (result.train, result.holdout)
-    levels = of_levels(sides)
-    return replace(result, depends=()) if levels else result, of_wire(given) + of_runs(sides) + levels
+    levels = levels_of(sides)
+    if levels is not None and not levels.beside:
+        result = replace(result, depends=())
+    return result, of_wire(given) + of_runs(sides) + ([] if levels is None else [levels.said])
 
 
 def of_own_terms(named: Collection[str], given: FrictionModel, written: FrictionModel) -> list[str]:

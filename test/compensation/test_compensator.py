@@ -662,3 +662,10 @@ def test_a_term_with_a_memory_moves_with_the_samples():
         law.advance(point, 2, PERIOD if k else 0.0)
     assert each._law._states == pytest.approx(law._states)
     assert each._law._states[0] != FrictionLaw(model, {})._functions(2).initial_states[0]
+
+
+def test_a_model_that_reads_no_load_asks_for_none_and_says_none():
+    each = FeedforwardCompensator(CRANE, SEED.subset(["viscous"]), CompensatorConfig(ramp_time=0.2))
+    out = each.step(ahc_sample(0.0, 100.0))
+    assert (out.drum_torque, each.status()["drum_torque"]) == (0.0, 0.0)
+    assert compensator().step(ahc_sample(0.0, 100.0)).drum_torque == CRANE.drum_torque(55e3, math.nan)

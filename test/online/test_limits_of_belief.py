@@ -6,7 +6,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from sea import CRANE, SEED, TOPICS, swell
+from sea import CRANE, SEED, START, TOPICS, Fed, swell
 
 from winch_friction.compensation.safe_output import AGAINST_SPEED, LONGEST_LAG
 from winch_friction.online import before_doubt, intake
@@ -406,6 +406,18 @@ def test_an_input_may_be_stamped_as_far_ahead_as_the_window_after_the_time_since
             assert gate._near(1000.0 + passed + window - 1e-3, 70.0 + passed)
             assert not gate._near(1000.0 + passed + window + 1e-3, 70.0 + passed)
         assert not gate._near(1000.0 + window + 1e-3, 69.0)  # a clock that was set back gives no credit
+
+
+@pytest.mark.parametrize(("ahead", "kept"), [(0.0, True), (0.45, True), (0.55, False), (1e6, False)])
+def test_what_came_before_the_first_speed_is_held_unless_it_is_stamped_beyond_the_window(ahead, kept):
+    """A stamp of a time to come would lock the input out until then; one that is a little ahead is a sender's clock."""
+    fed = Fed()
+    messages = dict(fed.messages(row(START)))
+    drop = next(topic for topic in messages if TOPICS.inputs[topic].channels[0] == "active.pressure_a")
+    early = dict(fed.messages(row(START + ahead)))[drop]
+    for topic, message in ((drop, early), (TOPICS.speed_topic, messages[TOPICS.speed_topic])):
+        fed.service.take(TOPICS.inputs[topic], message, START, START)
+    assert math.isfinite(fed.service.inputs.hold.stamp("active.pressure_a", math.inf)) is kept
 
 
 def test_what_is_missing_without_a_speed_is_told_with_the_reason_where_some_still_come():

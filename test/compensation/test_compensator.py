@@ -8,12 +8,14 @@ import numpy as np
 import pytest
 
 from winch_friction.compensation import CompensatorConfig, FeedforwardCompensator
+from winch_friction.compensation.parts import FrictionLaw
 from winch_friction.compensation.safe_output import SafeOutput
 from winch_friction.physics.channels import BAR, CM3_PER_REV
 from winch_friction.physics.errors import InputError, from_mapping
-from winch_friction.physics.friction import term_named
+from winch_friction.physics.friction import FrictionModel, term_named
 from winch_friction.physics.signals import GroupSample, Sample
 from winch_friction.physics.winch import sample_operating_point
+from winch_friction.physics.winch.operating_point import ChannelRanges, fastest_command
 from winch_friction.records.crane_file import load_crane
 from winch_friction.records.model_file import load_model
 
@@ -591,3 +593,79 @@ def test_a_slew_is_what_a_reversal_of_the_friction_at_this_load_needs_however_fa
         each.step(ahc_sample(0.0, speed))
         sizes = [abs(model_torque(seed, ahc_sample(0.0, 55.0), at)) for at in (3.0, speed)]
         assert each.status()["slew_limit"] == pytest.approx(1.3 * max(sizes) / 0.5)
+
+
+def test_of_two_models_before_a_sample_the_difference_to_what_was_published_is_carried_over():
+    """The one between them was never published: with it as the one before, the second made a step."""
+    each = compensator(ramp_time=1.0)
+    _, time = run_up(each, until=2.0)
+    before = each.step(ahc_sample(time, 100.0)).friction_torque
+    for factor in (1.3, 1.2):
+        each.load_model(SEED.with_values({"C6": SEED.value("C6") * factor}))
+    found = each.step(ahc_sample(time + PERIOD, 100.0)).friction_torque
+    target = 0.9 * model_torque(each.model, ahc_sample(0.0, 100.0), 100.0)
+    assert target > before + 10.0
+    assert found == pytest.approx(before + PERIOD * (target - before), abs=0.01 * (target - before))
+
+
+def test_a_load_that_is_set_while_it_runs_is_the_load():
+    each, other = compensator(load=20e3), compensator(load=80e3)
+    each.step(ahc_sample(0.0, 100.0, hook_load=math.nan))
+    each.configure(CompensatorConfig(load=80e3))
+    for k in range(1, 3):
+        one, two = (law.step(ahc_sample(k * PERIOD, 100.0, hook_load=math.nan)) for law in (each, other))
+        assert one.drum_torque == two.drum_torque == CRANE.drum_torque(80e3, math.nan)
+
+
+def test_a_command_in_rpm_gives_the_bound_no_room_beyond_the_fastest_speed():
+    """The envelope is what the largest speed of the crane, or twice the measured one, asks for, whatever comes in."""
+    each, fastest = compensator(scale=1.3, envelope=1.0), ChannelRanges(CRANE).speed
+    run_up(each, speed=100.0)
+    each.step(replace(ahc_sample(1.0, 100.0), speed_reference=0.95 * fastest))
+    bound = fastest_command(100.0, fastest)
+    assert bound < 0.9 * fastest
+    assert each._target.envelope == pytest.approx(
+        min(model_torque(SEED, ahc_sample(0.0, speed), speed) for speed in (bound, 0.95 * fastest)), rel=1e-9
+    )
+
+
+def test_it_is_called_active_only_once_it_has_faded_in_wholly():
+    outputs, _ = run_up(compensator(ramp_time=0.2))
+    assert {each.state for each in outputs if each.fade < 1.0} == {"fading"}
+    assert {each.state for each in outputs if each.fade == 1.0} == {"active"}
+    assert sum(0.5 < each.fade < 1.0 for each in outputs) >= 3
+
+
+def test_a_sample_without_a_time_counts_as_stale_and_changes_nothing():
+    each = compensator()
+    outputs, time = run_up(each)
+    found = each.step(ahc_sample(math.nan, 100.0))
+    assert found is outputs[-1]
+    status = each.status()
+    assert (status["steps"], status["stale"], status["missing"]) == (len(outputs) + 1, 1, "time")
+    assert each.step(ahc_sample(time, 100.0)).valid
+    fresh = compensator().step(ahc_sample(math.inf, 100.0))
+    assert (fresh.friction_torque, fresh.state, fresh.valid) == (0.0, "waiting", False)
+
+
+def test_a_term_with_a_memory_moves_with_the_samples():
+    """Presliding: after a reversal the bristles turn over a few hundredths of a radian, not at once and not never."""
+    term = term_named("presliding")
+    model = FrictionModel("bristles", (term,), tuple(each.typical for each in term.parameters))
+    each = FeedforwardCompensator(CRANE, model, CompensatorConfig(scale=1.0, ramp_time=0.02, envelope=2.0))
+    law = FrictionLaw(model, {})
+    for k in range(20):
+        sample = ahc_sample(k * PERIOD, 20.0)
+        each.step(sample)
+        drum_torque = CRANE.drum_torque(55e3, math.nan)
+        point = sample_operating_point(sample, CRANE, drum_torque=drum_torque, speed=20.0, width=3.0)
+        law.advance(point, 2, PERIOD if k else 0.0)
+    assert each._law._states == pytest.approx(law._states)
+    assert each._law._states[0] != FrictionLaw(model, {})._functions(2).initial_states[0]
+
+
+def test_a_model_that_reads_no_load_asks_for_none_and_says_none():
+    each = FeedforwardCompensator(CRANE, SEED.subset(["viscous"]), CompensatorConfig(ramp_time=0.2))
+    out = each.step(ahc_sample(0.0, 100.0))
+    assert (out.drum_torque, each.status()["drum_torque"]) == (0.0, 0.0)
+    assert compensator().step(ahc_sample(0.0, 100.0)).drum_torque == CRANE.drum_torque(55e3, math.nan)

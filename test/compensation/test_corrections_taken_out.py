@@ -1,11 +1,12 @@
 """The compensator takes out what its model knows to be wrong with the signals and the crane file."""
 
+import math
 from dataclasses import replace
 
 import pytest
 
 from winch_friction.compensation import CompensatorConfig, FeedforwardCompensator
-from winch_friction.physics.channels import BAR, CM3_PER_REV
+from winch_friction.physics.channels import BAR, CM3_PER_REV, GRAVITY
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.friction.correction import Correction
 from winch_friction.physics.signals import GroupSample, Sample
@@ -78,3 +79,20 @@ def test_a_model_with_a_delay_is_refused_by_name_and_the_good_one_kept():
         each.load_model(replace(SEED, corrections=(Correction("signal_delay", 0.05),)))
     assert each.model is SEED
     assert each.status()["refused_models"] == 1
+
+
+def test_what_cannot_be_taken_out_is_like_a_lost_input_and_said():
+    """The wire's weight in the load cell needs the wire that is out: without it the load would be a wrong one."""
+    each = FeedforwardCompensator(DECLARED, ERRING, SETTINGS)
+    assert each.step(logged_sample(0)).valid
+    found = each.step(replace(logged_sample(1), wire_out=math.nan))
+    assert not found.valid
+    assert each.status()["missing"] == "wire_weight cannot be taken out without wire_out"
+
+
+def test_a_load_is_held_by_the_drum_of_the_model_that_was_taken_over():
+    each = FeedforwardCompensator(DECLARED, SEED, SETTINGS)
+    outer, inner = CRANE.drum.layer_radii[5], DECLARED.drum.layer_radii[5]
+    assert each.step(true_sample(0)).drum_torque == pytest.approx(55e3 * GRAVITY * inner)
+    each.load_model(replace(SEED, corrections=tuple(c for c in KNOWN if c.name == "layer_radius")))
+    assert each.step(true_sample(1)).drum_torque == pytest.approx(55e3 * GRAVITY * outer)

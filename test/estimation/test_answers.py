@@ -51,3 +51,34 @@ def test_without_a_settling_time_frozen_and_invalid_are_said_at_once():
     assert each.text == "invalid"
     each.step(0.2, frozen=False, at_limit=False, dt=0.1)
     assert each.text == "learned"
+
+
+@pytest.mark.parametrize(
+    ("before", "share", "level"),
+    [
+        ("seed", 0.90, "seed"), ("seed", 0.89, "learning"), ("seed", 0.60, "learning"), ("seed", 0.59, "learned"),
+        ("learning", 0.94, "learning"), ("learning", 0.96, "seed"), ("learning", 0.61, "learning"),
+        ("learning", 0.64, "learning"), ("learning", 0.59, "learned"),
+        ("learned", 0.64, "learned"), ("learned", 0.66, "learning"), ("learned", 0.94, "learning"),
+        ("learned", 0.96, "seed"),
+    ],
+)  # fmt: skip
+def test_a_level_is_left_a_twentieth_later_than_it_was_reached(before, share, level):
+    """... and by what left it alone: what is learning is learned at six tenths, as what was still the seed's."""
+    status = ParameterStatus(EstimatorConfig())
+    status.level = before
+    status.step(share, False, False, 0.1)
+    assert status.level == status.text == level
+
+
+@pytest.mark.parametrize(("period", "at"), [(0.02, 5), (0.05, 2), (0.2, 1)])
+def test_the_statuses_are_looked_at_every_tenth_of_a_second(period, at):
+    looked, each = [], ParameterStatuses.__new__(ParameterStatuses)
+    each._since, each._frozen = 0.0, True
+    each._parameters = SimpleNamespace(prior=np.eye(1), at_limit=lambda phi: np.array([False]), free=np.array([0]))
+    each._each = [SimpleNamespace(step=lambda *given: looked.append((k, *given)))]
+    state = SimpleNamespace(considered_variances=np.array([0.25]), phi=np.zeros(1))
+    for k in range(1, 2 * at + 1):
+        each.step(state, k <= at, period + 1e-9)
+    assert [(k, share, frozen) for k, share, frozen, *_ in looked] == [(at, 0.5, True), (2 * at, 0.5, False)]
+    assert [given[-1] for given in looked] == pytest.approx([at * period] * 2)

@@ -111,16 +111,16 @@ def test_nothing_is_learned_while_an_input_is_missing(crane, seed, lost):
 def test_the_covariance_stays_positive_definite_over_many_steps(crane, seed):
     each = FrictionEstimator(crane, seed, CONFIG)
     minute = list(samples(crane, seed, duration=60.0))
-    for number, sample in zip(range(30_000), itertools.cycle(minute), strict=False):
+    for number, sample in zip(range(12_000), itertools.cycle(minute), strict=False):
         again = copy.copy(sample)
         again.time = number * 0.02
         each.step(again)
-        if number % 6000 == 0:
+        if number % 2000 == 0:
             scale = np.sqrt(np.diag(each._filter.P))
             kept = scale > 0.0
             correlation = each._filter.P[np.ix_(kept, kept)] / np.outer(scale[kept], scale[kept])
             assert np.linalg.eigvalsh(correlation).min() > 0.0
-    assert each.counts["accepted"] > 28_000
+    assert each.counts["accepted"] > 11_200
 
 
 @pytest.mark.parametrize(
@@ -167,8 +167,8 @@ def test_a_load_on_the_brake_is_not_learned_from_motors_that_carry_nothing(crane
     before, resting = each.drum_torque, copy.deepcopy(sea[-1])
     resting.motor_speed = resting.speed_reference = 0.0
     resting.groups["main"].pressure_a = resting.groups["main"].pressure_b
-    for k in range(18_000):
-        resting.time = 20.0 + 0.2 * k
+    for k in range(9000):
+        resting.time = 20.0 + 0.4 * k
         each.step(resting)
     assert each.drum_torque == pytest.approx(before, rel=0.001)
     rejected = each.counts["rejected"]

@@ -338,3 +338,40 @@ def test_in_lockstep_one_tick_brings_one_sample_however_late_it_is() -> None:
     node.steady, before = 1e6, node.voyage.samples
     node._tick()
     assert node.voyage.samples == before + 1
+
+
+@pytest.mark.parametrize(("rate", "held"), [(200.0, 0.1), (50.0, 0.1), (10.0, 0.25)])
+@pytest.mark.parametrize("lockstep", [False, True])
+def test_what_it_is_built_of_is_what_was_set(
+    monkeypatch: pytest.MonkeyPatch, rate: float, held: float, lockstep: bool
+) -> None:
+    """A torque is held for a tenth of a second, or two scans and a half where these are longer, and is none above what
+    the crane's compensator may say; every leg has the rate that was set; a rope's force is not measured."""
+    voyages, changed, topics = [], [], []
+    node = SimulatorNode.__new__(SimulatorNode)
+    settings = SimulatorNodeOptions(scenario="one", legs=("two",), sensor_rate=rate, duration=7.0, lockstep=lockstep,
+                                    seed=5, friction_factor=1.2, hidden=("drag=2",))  # fmt: skip
+    monkeypatch.setattr(of_nodes, "load_scenario", lambda name: name)
+    monkeypatch.setattr(of_nodes, "scaled_system", lambda model, factor: (model, factor))
+    monkeypatch.setattr(of_nodes, "Voyage", lambda *given: voyages.append(given))
+
+    def adjusted(name: str, *change: float) -> Any:
+        changed.append((name, *change))
+        return SimpleNamespace(name=name, sensors=SimpleNamespace(rate=change[0]))
+
+    monkeypatch.setattr(of_nodes, "adjusted", adjusted)
+    node._own, node.options = SimpleNamespace(read=lambda _: settings), SimpleNamespace(topics=lambda crane: TOPICS)
+    node.publisher = lambda kind, topic, *qos, **more: topics.append(topic)
+    node.trigger = lambda name, action: topics.append(name)
+    crane = SimpleNamespace(absolute_torque_limit=900.0)
+    node.build(crane, "model")
+    assert changed == [("one", rate, 7.0), ("two", rate, 7.0)]
+    (sea, sailed, truth, seed, hidden, legs), *others = voyages
+    assert (sea.name, sailed, truth, seed, hidden) == ("one", crane, ("model", 1.2), 5, [("drag", 2.0)])
+    assert [each.name for each in legs] == ["two"]
+    assert not others
+    assert node.held.hold_time == pytest.approx(held)
+    assert node.held.take(900.0, 0.0)
+    assert not node.held.take(901.0, 0.0)
+    assert node.answers.topics == ((FEEDFORWARD,) if lockstep else ())
+    assert set(topics) == set(TOPICS.inputs) - {"winch/rope_force"} | {"/clock", "~/truth", "~/progress", "reset"}

@@ -102,8 +102,8 @@ def test_it_looks_at_a_log_of_5_hz_as_well():
 def test_a_clock_that_is_set_makes_no_gain_true_again(by):
     """The first minute after it had become the one to compare with, and the wrong displacement the right one."""
     service, set_at = EstimatorService(CRANE, SEED, TOPICS), 0.85 * SECONDS
-    for sample in sailed(same, lambda time: 1.0 - 0.2 * (time > CHANGE_AT)):
-        if set_at < sample.time <= set_at + PERIOD:
+    for sample in itertools.islice(sailed(same, lambda time: 1.0 - 0.2 * (time > CHANGE_AT)), 0, None, 2):
+        if set_at < sample.time <= set_at + 2.0 * PERIOD:
             assert "displacement or pressures" in service.contradiction
             service.forget()
         sample.time += by * (sample.time > set_at)

@@ -6,7 +6,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from sea import CRANE, SEED, TOPICS, swell
+from sea import CRANE, SEED, START, TOPICS, Fed, swell
 
 from winch_friction.compensation.safe_output import AGAINST_SPEED, LONGEST_LAG
 from winch_friction.online import before_doubt, intake
@@ -408,6 +408,18 @@ def test_an_input_may_be_stamped_as_far_ahead_as_the_window_after_the_time_since
         assert not gate._near(1000.0 + window + 1e-3, 69.0)  # a clock that was set back gives no credit
 
 
+@pytest.mark.parametrize(("ahead", "kept"), [(0.0, True), (0.45, True), (0.55, False), (1e6, False)])
+def test_what_came_before_the_first_speed_is_held_unless_it_is_stamped_beyond_the_window(ahead, kept):
+    """A stamp of a time to come would lock the input out until then; one that is a little ahead is a sender's clock."""
+    fed = Fed()
+    messages = dict(fed.messages(row(START)))
+    drop = next(topic for topic in messages if TOPICS.inputs[topic].channels[0] == "active.pressure_a")
+    early = dict(fed.messages(row(START + ahead)))[drop]
+    for topic, message in ((drop, early), (TOPICS.speed_topic, messages[TOPICS.speed_topic])):
+        fed.service.take(TOPICS.inputs[topic], message, START, START)
+    assert math.isfinite(fed.service.inputs.hold.stamp("active.pressure_a", math.inf)) is kept
+
+
 def test_what_is_missing_without_a_speed_is_told_with_the_reason_where_some_still_come():
     gate = service().inputs
     arrivals = gate.arrivals[TOPICS.speed_topic]
@@ -560,6 +572,91 @@ def test_another_load_is_one_that_differs_by_a_twentieth(load, other):
     assert balance._is_other(load, sample) is other
     sample.groups = {"active": sample.groups["active"]}
     assert balance._is_other(55e3, sample)
+
+
+def gained(inertia, coulomb, viscous, *, speed=200.0, own=4.0, left=1.0, known=60.0, on=None):
+    """A balance that has seen this inertia, friction (N m, and N m s/rad) at this typical speed in rad/s: `own` (N m)^2
+    of what accelerates the shaft, and as much `left` that nothing explains; and whether it sees another gain."""
+    balance = on or InertiaBalance(CRANE)
+    matrix, found = 50.0 * np.diag([1.0, 1.0, speed**2, own]), np.array([30.0, coulomb, viscous, inertia])
+    balance._products = np.column_stack([matrix, matrix @ found])
+    balance._squares = float(found @ matrix @ found) + 50.0 * left
+    balance._known = known
+    return balance, balance._look()
+
+
+@pytest.mark.parametrize(
+    ("inertia", "friction", "changed"),
+    [
+        (0.8, 160.0, True),  # of a friction that was 200 N m
+        (1.2, 240.0, True),
+        (0.89, 178.0, True),
+        (0.91, 182.0, False),
+        (1.09, 218.0, False),
+        (0.8, 177.0, False),  # the friction by 0.575 of what the inertia shows
+        (0.8, 174.0, True),
+        (0.8, 137.0, True),
+        (0.8, 135.0, False),  # ... by 1.625
+        (0.8, 240.0, False),  # the other way
+    ],
+)
+@pytest.mark.parametrize("speed", [100.0, 300.0])
+def test_a_gain_is_what_moves_inertia_and_friction_at_the_speed_of_the_beginning_alike(
+    inertia, friction, changed, speed
+):
+    """100 N m of Coulomb's and as much of viscous friction at 200 rad/s; later it may turn faster or slower."""
+    balance, first = gained(1.0, 100.0, 0.5)
+    assert first is False
+    assert balance._first == pytest.approx((1.0, 200.0, 200.0))
+    assert gained(inertia, 80.0, (friction - 80.0) / 200.0, speed=speed, on=balance)[1] is changed
+    assert balance.change == pytest.approx(inertia - 1.0)
+
+
+@pytest.mark.parametrize(("known", "left", "tells"), [
+    (60.0, 11.0, True), (59.9, 11.0, False), (60.0, 11.2, False),  # 2 N m of 3.33 are six tenths
+])  # fmt: skip
+def test_a_gain_is_told_after_a_minute_by_an_inertia_above_what_the_balance_leaves(known, left, tells):
+    balance, first = gained(1.0, 100.0, 0.5, known=known, left=left)
+    assert first is (False if tells else None)
+    assert math.isnan(balance.change) is not tells
+    later = gained(0.8, 80.0, 0.4, left=left, on=gained(1.0, 100.0, 0.5)[0])[1]  # what it was counts, not what it is
+    assert later is (True if left < 11.1 else None)
+
+
+@pytest.mark.parametrize(("inertia", "coulomb"), [(-1.0, 100.0), (1.0, -101.0)])
+def test_what_is_no_gain_to_begin_with_is_compared_with_nothing(inertia, coulomb):
+    balance, first = gained(inertia, coulomb, 0.5)
+    assert first is balance._first is None
+    assert gained(1.0, 100.0, 0.5, on=balance)[1] is False  # and begins once it is one
+
+
+def test_a_step_of_the_balance_is_what_the_smoothed_signals_do_by_hand():
+    """Half of a step of 0.1 s passes the first low-pass of 0.1 s and a quarter the second; 10 rad/s are 50 rad/s^2."""
+    balance, lever = InertiaBalance(CRANE), CRANE.drum.radius(math.nan) / CRANE.gear_ratio
+    still, moving = row(0.0), row(0.1)
+    still.motor_speed, moving.motor_speed, still.heave_velocity, moving.heave_velocity = 40.0, 50.0, 0.0, 0.4
+    assert balance.contradiction(still) == balance.contradiction(moving) == ""
+    inertial = CRANE.inertia * 50.0 + 55e3 * lever * (lever * 50.0 + 2.0)
+    drive = sum(CRANE.motor_count(name) * each.displacement * (each.pressure_a - each.pressure_b)
+                for name, each in moving.groups.items())  # fmt: skip
+    beyond = drive - CRANE.drum_torque(55e3, math.nan) / CRANE.gear_ratio
+    expected = np.array([1.0, 1.0, 42.5, inertial, beyond])
+    assert balance._products == pytest.approx(0.1 * np.outer(expected[:4], expected))
+    assert (balance._squares, balance._known) == (pytest.approx(0.1 * beyond**2), 0.1)
+    balance.contradiction(row(0.2))
+    kept = math.exp(-0.1 / 40.0)
+    assert balance._products[0, 0] == pytest.approx(0.1 * (1.0 + kept))
+    assert balance._known == pytest.approx(0.2)
+
+
+@pytest.mark.parametrize("time", [-5.0, 0.0, 0.3])
+def test_a_stamp_that_stands_goes_back_or_comes_late_begins_the_smoothing_anew(time):
+    balance = InertiaBalance(CRANE)
+    balance.contradiction(row(0.0))
+    again = row(time)
+    again.motor_speed = 80.0
+    balance.contradiction(again)
+    assert (balance._signals["speed"].first, balance._signals["speed"].second, balance._known) == (80.0, 80.0, 0.0)
 
 
 # -- what the services say of themselves

@@ -6,11 +6,12 @@ from dataclasses import replace
 import pytest
 from sea import CRANE, SEED, TOPICS
 
-from winch_friction.compensation import CompensatorConfig
+from winch_friction.online.agreement import Agreement
 from winch_friction.online.compensator import CompensatorService
 from winch_friction.physics.channels import GRAVITY
 from winch_friction.physics.signals import GroupSample, Sample
 from winch_friction.physics.winch.crane import Drive
+from winch_friction.physics.winch.operating_point import ChannelRanges
 from winch_friction.records.topics import crane_topics
 
 PERIOD = 0.02  # s
@@ -32,15 +33,15 @@ def at_work(time: float, load: float, friction: float = 0.0, wave: float = 10.0,
     return Sample(time, omega, speed_reference=omega, groups={"active": active, "passive": passive}, hook_load=load)
 
 
-def said(seconds: float, config: CompensatorConfig | None = None, **how: float) -> list[str]:
-    """What the compensator says of each sample of a sea; `shown` kg, `rope` N and `out` m are its sensors."""
-    service = CompensatorService(CRANE, SEED, TOPICS, config)
+def said(seconds: float, assumed: float = NAN, **how: float) -> list[str]:
+    """What is said of each sample of a sea, with a load of `assumed` kg set; `shown` kg, `rope` N and `out` m are its
+    sensors."""
+    agreement = Agreement(CRANE, ChannelRanges(CRANE, TOPICS.groups), load=assumed)
     shown, rope, out = (how.pop(name, NAN) for name in ("shown", "rope", "out"))
     found = []
     for k in range(round(seconds / PERIOD)):
         sample = replace(at_work(k * PERIOD, **how), hook_load=shown, rope_force=rope, wire_out=out)
-        service.take_row(sample)
-        found.append("; ".join(service.contradictions))
+        found.append("; ".join(agreement.contradictions(sample, sample.time)))
     return found
 
 
@@ -56,8 +57,7 @@ def test_a_load_cell_that_is_off_by_less_than_a_dead_one_is_doubted_after_two_wa
 
 def test_what_shows_the_load_is_named():
     assert said(25.0, load=55e3, rope=15e3 * GRAVITY)[-1].startswith("rope_force contradicts")
-    told = CompensatorConfig(load=15e3)
-    assert said(25.0, told, load=55e3)[-1].startswith("load (the parameter) contradicts")
+    assert said(25.0, 15e3, load=55e3)[-1].startswith("load (the parameter) contradicts")
 
 
 @pytest.mark.parametrize("wave", [4.0, 10.0, 20.0])

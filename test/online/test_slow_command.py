@@ -13,7 +13,7 @@ from winch_friction.physics.winch.operating_point import ChannelRanges, SpeedPre
 SWELL, SPEED = 6.0, 100.0  # s, rad/s
 
 
-def sail(fast, slow, lead, seconds=9.0):
+def sail(fast, slow, lead, seconds=7.0):
     """A swell whose speed comes at `fast` Hz and its command at `slow`: (stamp, what was published) after 2 s."""
     fed = Fed(config=CompensatorConfig(ramp_time=0.5, lead=lead))
     for k in range(round(seconds * fast)):

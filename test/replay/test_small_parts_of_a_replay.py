@@ -8,13 +8,14 @@ import pytest
 
 from winch_friction.compensation.config import ReplayConfig
 from winch_friction.estimation.answers import Estimate
-from winch_friction.physics.signals import GroupSample, Sample
+from winch_friction.physics.signals import GroupSample, Run, Sample
 from winch_friction.records.bag_write import MESSAGES
 from winch_friction.records.crane_file import load_crane
 from winch_friction.records.model_file import load_model
 from winch_friction.records.topics import crane_topics
 from winch_friction.replay.estimator import EstimateRecord
-from winch_friction.replay.settings import Phase, ReplaySettings
+from winch_friction.replay.settings import Phase, ReplaySettings, longest_held, settings_for_rate
+from winch_friction.replay.summary import summary
 from winch_friction.replay.voices import PAUSE, CompensatorVoice, EstimatorVoice
 
 CRANE, SEED = load_crane("crane_150t"), load_model("a6vm215_crane2")
@@ -150,3 +151,25 @@ def test_a_pause_is_a_second_without_a_sample(silence, begins):
     own = voice(Phase(), Phase(start=float("nan")))
     own.service.inputs.last_stamp = 50.0
     assert own._begins(Phase(start=float("nan")), 50.0 + silence) is begins
+
+
+# -- what is said of it in a few numbers
+def test_a_summary_is_of_the_torque_and_of_what_was_taken_in():
+    torque, time = np.array([0.0, -30.0, 40.0, 0.0]), 100.0 + 0.5 * np.arange(4.0)
+    given = Run("x", {"time": time, "friction_torque": torque}, aside={"state": np.array(["fading", *3 * ["active"]])})
+    states = np.array(["waiting", "rejected", "learning", "stick"])
+    found = summary(
+        SimpleNamespace(
+            compensator=given, estimator=Run("x", {"time": time}, aside={"state": states}), live=(), parameters=(),
+            status={"nis_share_inside": 0.9},
+        )
+    )  # fmt: skip
+    assert (found["samples"], found["duration_s"], found["nis_share_inside"]) == (4, 1.5, 0.9)
+    assert (found["feedforward_rms_Nm"], found["feedforward_peak_Nm"]) == (25.0, 40.0)
+    assert (found["active_share"], found["accepted_share"]) == (0.75, 0.75)
+
+
+def test_a_log_may_be_as_slow_as_ten_seconds():
+    assert longest_held() == 10.0
+    settings = settings_for_rate(3.0)
+    assert (settings.phases[0].config.max_age, settings.estimator_max_age) == (3.0, 3.0)

@@ -76,7 +76,6 @@ def swinging_load(
     What is `hiding` a swing, columns as well, is beside it where nothing swings without. Where the wire's `length` m is
     known and changes, the stiffness follows it if that leaves less.
     """
-
     frequencies = tuple(_frequencies(stiffnesses, mass, dt))
     besides = [each for each in (friction, hiding) if each is not None]
     factor = int(FINE / (max(frequencies, default=np.inf) * dt))

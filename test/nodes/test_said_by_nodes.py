@@ -362,18 +362,20 @@ def learned(**changes: Any) -> Estimate:
 
 
 @pytest.mark.parametrize(
-    ("changes", "said", "speed", "torque"),
+    ("changes", "doubted", "said", "speed", "torque"),
     [
-        ({}, "valid 1", 50.0, 300.0),
-        ({"accepted": False}, "invalid 1", 50.0, 300.0),
-        ({"friction_torque": math.nan}, "invalid 1", 50.0, 0.0),
-        ({"speed": math.nan, "friction_torque": -3.0}, "valid 1", 0.0, -3.0),
+        ({}, False, "valid 1", 50.0, 300.0),
+        ({}, True, "invalid 1", 50.0, 300.0),
+        ({"accepted": False}, False, "invalid 1", 50.0, 300.0),
+        ({"friction_torque": math.nan}, False, "invalid 1", 50.0, 0.0),
+        ({"speed": math.nan, "friction_torque": -3.0}, False, "valid 1", 0.0, -3.0),
     ],
 )
 def test_an_estimators_torque_is_that_of_the_sample_and_zero_where_it_shows_none(
-    changes: dict[str, Any], said: str, speed: float, torque: float
+    changes: dict[str, Any], doubted: bool, said: str, speed: float, torque: float
 ) -> None:
     node = bare(EstimatorNode, _answers=0)
+    node.service = Given(valid=lambda estimate: estimate.valid and not doubted)
     node._torque = to(node, "torque")
     for number in (1, 2):
         node._publish(learned(**changes))

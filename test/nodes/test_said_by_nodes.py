@@ -373,7 +373,7 @@ def learned(**changes: Any) -> Estimate:
 def test_an_estimators_torque_is_that_of_the_sample_and_zero_where_it_shows_none(
     changes: dict[str, Any], said: str, speed: float, torque: float
 ) -> None:
-    node = bare(EstimatorNode, _answers=0)
+    node = bare(EstimatorNode, _answers=0, service=Given(valid=lambda estimate: estimate.valid))
     node._torque = to(node, "torque")
     for number in (1, 2):
         node._publish(learned(**changes))
@@ -414,7 +414,7 @@ def test_the_other_inputs_are_counted_where_no_speed_comes(silence: float, polle
         ({"state": "stick"}, "", (OK, "stick")),
         ({"state": "waiting"}, "", (WARN, "waiting for the speed")),
         ({"state": "waiting", "missing": ""}, "", (WARN, "waiting")),
-        ({"state": "rejected"}, "", (WARN, "rejected")),
+        ({"state": "rejected", "rejection": "a jump"}, "", (WARN, "rejected: a jump")),
         ({"state": "contradicted"}, "", (ERROR, "contradicted: a load")),
         ({"suspicion": "a gain"}, "", (WARN, "learning; a gain")),
         ({"state": "contradicted", "suspicion": "a gain"}, "full", (ERROR, "contradicted: a load; a gain; full")),
@@ -424,7 +424,8 @@ def test_the_other_inputs_are_counted_where_no_speed_comes(silence: float, polle
 def test_a_filters_state_has_its_level_and_its_reason(
     changes: dict[str, str], unkept: str, found: tuple[int, str]
 ) -> None:
-    given = {"state": "learning", "missing": "the speed", "contradictions": "a load", "suspicion": ""} | changes
+    silent = {"suspicion": "", "rejection": ""}
+    given = {"state": "learning", "missing": "the speed", "contradictions": "a load", **silent, **changes}
     node = bare(EstimatorNode, _unkept=unkept, service=Given(status=lambda now: dict(given), last=None))
     health = node._filter_health()
     assert (health.part, health.level, health.summary) == ("filter", *found)

@@ -120,6 +120,10 @@ def test_a_load_that_is_wrong_by_a_factor_is_a_gear_or_a_displacement_by_the_oth
     assert found["active.displacement"].undo(view()).groups["active"].displacement[0] == 1.5e-5
 
 
+def swung(share):
+    return GroupView(3.0, 1e7 * ONE, 2e7 * ONE, share * 3.42e-5 * ONE)
+
+
 @pytest.mark.parametrize(
     ("changed", "beyond"),
     [
@@ -136,6 +140,15 @@ def test_a_load_that_is_wrong_by_a_factor_is_a_gear_or_a_displacement_by_the_oth
             {"groups": {"main": GroupView(11.0, 1e7 * ONE, 2e7 * ONE, 0.015 * 3.42e-5 * ONE)}},
             {"main.displacement": 2.0},
         ),
+        # one of two groups is swung out, as far as its feedback tells; both are not, while the winch turns
+        ({"groups": {"active": swung(0.0), "passive": swung(0.5)}}, {}),
+        ({"groups": {"active": swung(-0.02), "passive": swung(0.5)}}, {}),
+        (
+            {"groups": {"active": swung(0.0), "passive": swung(0.015)}},
+            {"active.displacement": 2.0, "passive.displacement": 2.0},
+        ),
+        # the feedback of a group that is never at zero has another unit: a share under [cm^3/rev]
+        ({"groups": {"active": swung(0.003), "passive": swung(0.5)}}, {"active.displacement": 10.0}),
     ],
 )
 def test_what_no_machine_of_this_kind_does_counts_by_how_far_it_is_beyond(changed, beyond):

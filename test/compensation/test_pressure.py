@@ -85,6 +85,23 @@ def test_it_is_let_go_with_the_torque(crane, seed):
         assert abs(s.pressure) <= s.friction_torque / (MOTORS * 0.1 * crane.max_displacement) * (1.0 + 1e-9)
 
 
+@pytest.mark.parametrize(("share", "pressed"), [(0.0, 0.0), (-0.04, 0.0), (0.01, 0.1)])
+def test_motors_that_are_swung_out_are_asked_for_nothing(crane, seed, share, pressed):
+    """They carry no friction whatever their pressure: 293 bar went out at a displacement of zero, `valid`."""
+    each = compensator(crane, seed)
+    said = driven(each, crane, [share] * 50)[-1]
+    assert said.friction_torque > 200.0
+    floor = said.friction_torque / (MOTORS * 0.1 * crane.max_displacement)
+    assert said.pressure == pytest.approx(pressed * floor, rel=1e-9)
+    assert said.valid  # the torque is
+
+
+def test_a_crane_of_unknown_motors_that_are_swung_out_is_answered(crane):
+    groups = {"active": GroupSample(50 * BAR, 25 * BAR, 0.0)}
+    bare = replace(crane, max_displacement=0.0)
+    assert pressure_per_torque(Sample(0.0, 0.0, groups=groups), bare, CompensatorConfig()) == 0.0
+
+
 # -- the part itself
 def test_it_never_has_another_sign_than_the_torque():
     each = CarryingPressure(1e7)
@@ -114,8 +131,11 @@ def test_a_group_that_is_not_there_carries_nothing():
     [(["active", "passive"], "active", "active"), (["active", "passive"], "passive", "passive"),
      (["active", "passive"], "main", ""), (["main"], "active", "main"), ([], "active", "")],
 )  # fmt: skip
-@pytest.mark.parametrize(("share", "counted"), [(0.5, 0.5), (0.05, 0.1), (-0.01, 0.1)])
+@pytest.mark.parametrize(
+    ("share", "counted"), [(0.5, 0.5), (0.1, 0.1), (0.05, 0.2), (0.0, math.inf), (-0.04, math.inf)]
+)
 def test_the_group_that_was_set_carries_it_or_the_only_one(crane, groups, name, carries, share, counted):
+    """At half the floor half its pressure; swung out none, and none past centre, where it would push the other way."""
     members = {each: GroupSample(50 * BAR, 25 * BAR, share * crane.max_displacement) for each in groups}
     found = pressure_per_torque(Sample(0.0, 0.0, groups=members), crane, CompensatorConfig(pressure_group=name))
     motors = crane.groups.get(carries, math.inf)

@@ -18,6 +18,7 @@ from winch_friction.records.topics import crane_topics, stamp_header
 CRANE = load_crane("crane_150t")
 TOPICS = crane_topics(CRANE)
 SPEED, PRESSURE, LOAD = "winch/joint_states", "winch/active/pressure_a", "winch/hook_load"
+HEAVE = "winch/heave_velocity"
 
 
 class Heard:
@@ -88,6 +89,18 @@ def test_a_silence_is_said_when_the_input_counts_as_lost(heard: Heard, topic: st
     heard.hear(1.0)
     heard.hear(silent, without=(topic,))
     assert heard.health.report().level == level
+
+
+def test_a_motion_sensor_that_fell_silent_is_told_what_to_send_in_words_that_stay(heard: Heard) -> None:
+    """Its silence is no crane that stands still; a text of its own for every second buried all others in a log."""
+    said = set()
+    arrivals = heard.gate.arrivals[HEAVE]
+    arrivals.messages = 1
+    for silence in (3.0, 17.0):
+        arrivals.arrived = heard.now - silence
+        said.add(heard.health.report().summary)
+    assert len(said) == 1
+    assert f"{HEAVE}: silent for more than 0.5 s: send 0 where the crane stands still" in said.pop()
 
 
 def test_an_optional_input_may_pause_longer_than_a_needed_one(heard: Heard) -> None:
@@ -220,7 +233,7 @@ def test_what_is_worst_is_said_first_and_gives_the_level(heard: Heard) -> None:
     heard.hear(2.5, without=(PRESSURE, LOAD))
     report = heard.health.report()
     assert report.level == ERROR
-    assert report.summary == f"{PRESSURE}: silent for 2.5 s; {LOAD}: silent for 2.5 s"
+    assert report.summary == f"{PRESSURE}: silent for more than 0.1 s; {LOAD}: silent for more than 2 s"
 
 
 def test_never_heard_is_told_with_its_publishers_and_only_of_what_is_needed(watched: Heard) -> None:

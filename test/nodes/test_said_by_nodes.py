@@ -416,7 +416,7 @@ def test_the_other_inputs_are_counted_where_no_speed_comes(silence: float, polle
         ({"state": "stick"}, "", (OK, "stick")),
         ({"state": "waiting"}, "", (WARN, "waiting for the speed")),
         ({"state": "waiting", "missing": ""}, "", (WARN, "waiting")),
-        ({"state": "rejected"}, "", (WARN, "rejected")),
+        ({"state": "rejected", "rejection": "a jump"}, "", (WARN, "rejected: a jump")),
         ({"state": "contradicted"}, "", (ERROR, "contradicted: a load")),
         ({"suspicion": "a gain"}, "", (WARN, "learning; a gain")),
         ({"state": "contradicted", "suspicion": "a gain"}, "full", (ERROR, "contradicted: a load; a gain; full")),
@@ -426,7 +426,8 @@ def test_the_other_inputs_are_counted_where_no_speed_comes(silence: float, polle
 def test_a_filters_state_has_its_level_and_its_reason(
     changes: dict[str, str], unkept: str, found: tuple[int, str]
 ) -> None:
-    given = {"state": "learning", "missing": "the speed", "contradictions": "a load", "suspicion": ""} | changes
+    silent = {"suspicion": "", "rejection": ""}
+    given = {"state": "learning", "missing": "the speed", "contradictions": "a load", **silent, **changes}
     node = bare(EstimatorNode, _unkept=unkept, service=Given(status=lambda now: dict(given), last=None))
     health = node._filter_health()
     assert (health.part, health.level, health.summary) == ("filter", *found)

@@ -7,10 +7,11 @@ import pytest
 from sea import CRANE, PERIOD, SEED
 
 from winch_friction.estimation.config import EstimatorConfig
-from winch_friction.online.agreement import EXCHANGED_SAID, NONE_SAID
+from winch_friction.online.agreement import EXCHANGED_SAID, NONE_SAID, SWUNG_SAID, DriveByItself
 from winch_friction.online.compensator import CompensatorService
 from winch_friction.online.estimator import EstimatorService
 from winch_friction.physics.signals import GroupSample, Sample
+from winch_friction.physics.winch.operating_point import ChannelRanges
 from winch_friction.records.topics import crane_topics
 
 FULL, BOOST = CRANE.max_displacement, 25e5  # m3/rad, Pa
@@ -44,6 +45,47 @@ def test_pressures_in_another_unit_are_no_pressures_of_a_winch_that_hoists(unit)
     when, why = first_said(sea(4.0, lambda a, b: (a / unit, b / unit)))
     assert why == NONE_SAID
     assert when == pytest.approx(1.2, abs=0.2)
+
+
+def by_stroke(samples: Iterator[Sample], rail: float, dead: bool = False) -> Iterator[Sample]:
+    """The same torque at a pressure of `rail` Pa, set by the stroke; its feedback may be `dead`, about zero."""
+    for k, each in enumerate(samples):
+        own = each.groups["main"]
+        needed = own.displacement * (own.pressure_a - own.pressure_b) / rail
+        shown = 0.002 * FULL * math.sin(k) if dead else needed
+        yield Sample(each.time, each.motor_speed, each.speed_reference,
+                     {"main": GroupSample(rail + BOOST, BOOST, shown)})  # fmt: skip
+
+
+def test_motors_that_are_swung_out_hoist_nothing():
+    """A feedback without supply gave the friction of an empty hook, `valid`, and an estimator learned of it."""
+    when, why = first_said(by_stroke(sea(12.0, lambda a, b: (a, b)), 3e7, dead=True))
+    assert why == SWUNG_SAID
+    assert when == pytest.approx(10.2, abs=0.2)  # 5 s of hoisting, in waves of 10 s
+
+
+@pytest.mark.parametrize(("load", "friction"), [(0.0, 60.0), (15e3, 200.0)])
+def test_a_stroke_that_passes_through_zero_is_believed(load, friction):
+    """At rated pressure and with an empty hook, whose inertia takes more than its friction."""
+    assert not first_said(by_stroke(sea(18.0, lambda a, b: (a, b), load, friction), 450e5))[1]
+
+
+@pytest.mark.parametrize(("dead", "doubted"), [(False, False), (True, True)])
+def test_a_stroke_at_zero_is_doubted_before_it_is_said_and_one_that_passes_through_it_is_not(dead, doubted):
+    """What an estimator learns of a light load would never be believed, were every wave's passing a doubt."""
+    each = DriveByItself(CRANE, ChannelRanges(CRANE, ("main",)))
+    samples = by_stroke(sea(4.5, lambda a, b: (a, b), 0.0, 120.0), 3e7, dead)
+    said = [(each.contradiction(sample, PERIOD), each.pending) for sample in samples]
+    assert not any(words for words, _ in said)
+    assert any(pending for _, pending in said) == doubted
+
+
+def test_of_motors_that_are_not_all_shown_some_may_be_swung_out():
+    active = (
+        Sample(each.time, each.motor_speed, each.speed_reference, {"active": each.groups["main"]})
+        for each in by_stroke(sea(18.0, lambda a, b: (a, b)), 3e7, dead=True)
+    )
+    assert not first_said(active, crane_topics(CRANE, ("active",)))[1]
 
 
 def test_exchanged_ports_would_pull_the_load_down():

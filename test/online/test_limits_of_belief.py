@@ -675,13 +675,19 @@ def test_an_estimator_says_true_what_it_does(silence, heard, missing, contradict
     own = learner(contradiction=contradiction, missing=missing, _enabled=False)
     own.law.status, own.law.load_apart = (lambda: {"state": "steady", "lateness": "late"}), 0.25
     own.inputs = SimpleNamespace(silence=lambda now: silence, without_speed=lambda now: "the speed")
-    own.last = SimpleNamespace(accepted=accepted) if heard else None
+    own.law.config = SimpleNamespace(gate=4.0)
+    own.last = SimpleNamespace(accepted=accepted, innovation=0.1) if heard else None
     own._balance = SimpleNamespace(suspicion="a load cell")
     found = own.status(70.0)
     assert (found["state"], found["missing"], found["contradictions"]) == (state, lacks, contradiction)
     assert (found["enabled"], found["load_apart"], found["suspicion"]) == (False, 0.25, "a load cell; late")
     own._balance.suspicion = ""
     assert own.status(70.0)["suspicion"] == "late"
+    beyond = "motor_speed is more than 4 sigma from what the drive torque makes of it"
+    assert found["rejection"] == (beyond if state == "rejected" else "")
+    if state == "rejected":
+        own.last.innovation = math.nan
+        assert own.status(70.0)["rejection"] == "stamp not after that of the last sample"
 
 
 def test_that_no_friction_is_known_is_said_once_in_a_silence_and_at_the_end():

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from winch_friction.commissioning.balance import Closure, closure, static_torque
-from winch_friction.commissioning.view import RunView, usable
+from winch_friction.commissioning.view import GroupView, RunView, usable
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.signals import FloatArray, Run
 from winch_friction.physics.winch.crane import CURRENT, ELECTRIC, Crane
@@ -119,7 +119,7 @@ LARGEST_DISPLACEMENT = 1.06  # of the crane's largest: the feedback's error
 HEAVIEST = 1.5  # of what all motors hold at 450 bar
 RATED_TO_LIMIT = 450.0 / 300.0
 LOWEST_SUM = 8e5  # Pa: p_A + p_B of any loop in use lies above; the boost alone is several times that
-SMALLEST_DISPLACEMENT = 0.03  # of the crane's largest, at the run's largest
+SMALLEST_DISPLACEMENT = 0.03  # of the crane's largest, at the run's largest; one group of several may be swung out
 ROUGHEST = 15.0  # m/s of crane tip
 STEEP = 0.1  # a ratio of e^0.1 beyond the limit costs one sigma
 MOST_BEYOND = 400.0
@@ -132,15 +132,23 @@ def excesses(view: RunView) -> dict[str, float]:
         found["motor_speed"] = _top(view.speed) / FASTEST
         heaviest = HEAVIEST * RATED_TO_LIMIT * view.rated_torque
         found["hook_load"] = _top(static_torque(view)) / heaviest if heaviest > 0.0 else 0.0
+    widest = max((_top(group.displacement) for group in view.groups.values()), default=0.0)
     for name, group in view.groups.items():
         too_low = LOWEST_SUM / max(_top(group.pressure_sum), 1e-300)
         found[f"{name}.pressure"] = max(_top(group.drop) / HIGHEST, too_low)
         if view.max_displacement > 0.0:
             largest = _top(group.displacement)
-            too_small = SMALLEST_DISPLACEMENT * view.max_displacement / max(largest, 1e-300)
+            told = widest if _swung_out(group) else largest
+            too_small = SMALLEST_DISPLACEMENT * view.max_displacement / max(told, 1e-300)
             too_large = largest / (LARGEST_DISPLACEMENT * view.max_displacement)
             found[f"{name}.displacement"] = max(too_small, too_large)
     return {name: ratio for name, ratio in found.items() if ratio > 1.0}
+
+
+def _swung_out(group: GroupView) -> bool:
+    """Whether a group's displacement comes to zero: its motors may be swung out while another group drives; of one that
+    is small and never zero the unit is wrong."""
+    return float(np.nanmin(group.displacement, initial=np.inf)) <= 0.0
 
 
 def range_score(view: RunView) -> float:

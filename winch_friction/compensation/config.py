@@ -76,7 +76,9 @@ class CompensatorConfig:
     pressure_limit: float = option(
         math.inf, lower=0.0, upper=math.inf, unit="Pa", doc="bound of the pressure; never above the crane's rated one"
     )
-    min_displacement: float = option(0.1, lower=0.01, upper=1.0, doc="floor of D/D_max in the pressure feedforward")
+    min_displacement: float = option(
+        0.1, lower=0.01, upper=1.0, doc="D/D_max below which the pressure feedforward falls to zero"
+    )
 
     def __post_init__(self) -> None:
         check(self)

@@ -256,14 +256,17 @@ class Bridge:
 def pressure_per_torque(sample: Sample, crane: Crane, config: CompensatorConfig) -> float:
     """Pa on the carrying group per N m at the shaft; 0 for an electric drive or a group that is not there.
 
-    The displacement has a floor: a group that is swung out cannot carry friction, and its pressure would be without
-    bound.
+    Below the floor of the displacement it falls to nothing with it: a group that is swung out cannot carry friction,
+    whose pressure would be without bound, and one that reads past centre would push the other way.
     """
     name = config.pressure_group if len(sample.groups) != 1 else next(iter(sample.groups))
     if not crane.drive.hydraulic or name not in sample.groups:
         return 0.0
-    displacement = max(sample.groups[name].displacement, config.min_displacement * crane.max_displacement)
-    return pressure_feedforward(1.0, crane.motor_count(name), displacement)
+    displacement, floor = sample.groups[name].displacement, config.min_displacement * crane.max_displacement
+    if not displacement > 0.0:
+        return 0.0
+    full = pressure_feedforward(1.0, crane.motor_count(name), max(displacement, floor))
+    return full * min(1.0, displacement / floor) if floor else full
 
 
 @dataclass

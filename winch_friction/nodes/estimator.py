@@ -201,6 +201,7 @@ class EstimatorNode(WinchNode):
         why = {
             "waiting": status["missing"] and f" for {status['missing']}",
             "contradicted": f": {status['contradictions']}",
+            "rejected": f": {status['rejection']}",
         }
         level = {"waiting": WARN, "rejected": WARN, "contradicted": ERROR}.get(state, OK)
         said = f"{state}{why.get(state, '')}"

@@ -13,6 +13,7 @@ from winch_friction.records.topics import FLOAT64
 SELDOM = 0.5  # s
 MOST_AFTER = 0.5  # of a topic's messages: a network now and then lets one overtake another
 BEHIND = "comes after the speed of its own instant, so that each sample holds the one before: publish the speed last"
+STILL = ": send 0 where the crane stands still"  # what came once is lost when it is silent, not absent
 MISMATCH = "publishers do not match its quality of service"
 
 
@@ -75,8 +76,9 @@ class InputHealth:
         problems, (matched, publishers) = [], senders
         if arrivals.messages == 0 and needed:
             problems.append((ERROR if self._gate_was_heard() else WARN, f"{topic}: never heard, {matched} publishers"))
-        elif arrivals.messages and now - arrivals.arrived > self._limit(topic, needed):
-            problems.append((ERROR if needed else WARN, f"{topic}: silent for {now - arrivals.arrived:.1f} s"))
+        elif arrivals.messages and now - arrivals.arrived > (limit := self._limit(topic, needed)):
+            still = STILL if "heave_velocity" in self._gate.topics.inputs[topic].channels else ""
+            problems.append((ERROR if needed else WARN, f"{topic}: silent for more than {limit:g} s{still}"))
         elif refused:
             problems.append((ERROR if needed else WARN, f"{topic}: {refused} refused, {arrivals.reason}"))
         elif lag := self._lag(topic):

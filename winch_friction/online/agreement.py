@@ -1,9 +1,8 @@
-"""What is believed: a stamp that advances, a sender with one voice, pressures that can be a winch's, a command and a
-speed that fit each other; the load and the drive's torque are in `doubt`.
-"""
+"""What is believed: a stamp that advances, a sender with one voice, a drive that can be a winch's, a command and a
+speed that fit each other; the load and the drive's torque are in `doubt`."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import Enum
 from typing import Any
@@ -170,55 +169,59 @@ class Motions:
 
 
 # -- the drive by itself
-# Pa; friction alone asks for some bar to hoist an empty hook, and loops are boosted by ten and more. 1000 bar in kPa
-# are less, and so is a dead sensor of which the atmosphere was taken off
+# Pa; loops are boosted by ten bar and more. 1000 bar in kPa are less, and so is a dead sensor less the atmosphere
 LEAST_PRESSURE = 1.5e5
 # of what the rated load asks for; zeros of transducers are a sixth of it, and so is what an acceleration that has only
 # begun leaves of an empty hook's inertia in the middle of both ways
 LEAST_PULL = 0.05
 PULL_TIME, PULL_KNOWN = 1.0, 5.0  # s until either counts; s of motion each way, half a wave of 10 s
+LEAST_STROKE = 0.005  # of the largest: half of what the motors' own bearings take at the rated pressure (K4 of 14 N m)
 NONE_SAID = f"no pressure above {LEAST_PRESSURE / 1e5:g} bar while it hoists: not in Pa, or sensors without supply?"
+SWUNG_SAID = f"no displacement above {LEAST_STROKE:.1%} while it hoists: a feedback without supply, or another unit?"
 EXCHANGED_SAID = "the drive torque pulls the load down, hoisting and lowering: are pressure_a and pressure_b exchanged?"
 
 
 class DriveByItself:
-    """Whether a winch hoists at no pressure, or its motors pull the load down whichever way it turns; no load and no
-    model is asked. A crane without a load cell takes its load from the pressures: in bar where Pa are meant, without
-    supply or with exchanged ports they show none, and the friction of an empty hook went out for that of the load.
-    """
+    """Whether a winch hoists at no pressure or no stroke, or its motors pull the load down whichever way it turns; no
+    load and no model is asked. A crane without a load cell fed forward the friction of an empty hook then, `valid`."""
 
     def __init__(self, crane: Crane, ranges: ChannelRanges) -> None:
-        self._crane, self._moving = crane, AGAINST_SPEED * crane.speed_scale  # rad/s
+        self._crane, self._motors = crane, max(crane.groups.values(), default=0)
+        self._moving, self._stroke = AGAINST_SPEED * crane.speed_scale, LEAST_STROKE * crane.max_displacement
         self._least = LEAST_PULL * 0.5 * ranges.load  # kg; the ranges leave twice the rated load
-        self._none, self._exchanged = Doubt(PULL_TIME), Doubt(PULL_TIME)
-        self._hoisting, self._lowering = Way(), Way()
+        # a stroke that sets the torque passes through zero with every wave, for 1.3 s at most
+        self._nearly, self._swung = Doubt(0.5 * PULL_KNOWN), Doubt(PULL_KNOWN)
+        self._hoisting, self._lowering, self._none, self._exchanged = Way(), Way(), Doubt(PULL_TIME), Doubt(PULL_TIME)
 
     @property
     def pending(self) -> bool:
         """Whether something is wrong, though it may not be said yet: one way may tell before both were seen."""
-        return self._none.pending or self._exchanged.pending or self._hoisting.drive < 0.0
+        return self._none.pending or self._exchanged.pending or self._hoisting.drive < 0.0 or self._nearly.stands
 
     def contradiction(self, sample: Sample, dt: float) -> str:
         """What cannot be after `dt` s more, in words, '' for nothing."""
-        none = self._none.step(self._without_pressure(sample), dt)
+        pressures = [p for each in sample.groups.values() for p in (each.pressure_a, each.pressure_b)]
+        strokes = [each.displacement for each in sample.groups.values()] if self._whole(sample) else []
+        none = self._none.step(self._hoists_below(sample, pressures, LEAST_PRESSURE), dt)
+        still = self._hoists_below(sample, strokes, self._stroke)
+        swung = [each.step(still, dt) for each in (self._nearly, self._swung)]
         exchanged = self._exchanged.step(self._pulls_down(sample, dt), dt)
-        if none:
-            return NONE_SAID
-        return EXCHANGED_SAID if exchanged else ""
+        return NONE_SAID if none else SWUNG_SAID if swung[1] else EXCHANGED_SAID if exchanged else ""
 
-    def _without_pressure(self, sample: Sample) -> bool | None:
+    def _whole(self, sample: Sample) -> bool:
+        """Whether all motors are shown: others may hold the load."""
+        return bool(sample.groups) and self._crane.motor_total(tuple(sample.groups)) >= self._motors
+
+    def _hoists_below(self, sample: Sample, shown: Sequence[float], least: float) -> bool | None:
         """None where it does not hoist: lowering, a pressure drop alone passes through nothing."""
-        shown = [p for each in sample.groups.values() for p in (each.pressure_a, each.pressure_b)]
         if not shown or not sample.motor_speed > self._moving or any(map(math.isnan, shown)):
             return None
-        return max(map(abs, shown)) < LEAST_PRESSURE
+        return max(map(abs, shown)) < least
 
     def _pulls_down(self, sample: Sample, dt: float) -> bool | None:
-        """Whether the middle of both ways, without friction and inertia, is plainly no load's; None of some motors:
-        those that are not shown may hold it."""
-        groups, crane = sample.groups, self._crane
-        whole = bool(groups) and crane.motor_total(tuple(groups)) >= max(crane.groups.values())
-        torque = sample_drive_torque(sample, crane) if whole else math.nan
+        """Whether the middle of both ways, without friction and inertia, is plainly no load's; None of some motors."""
+        crane = self._crane
+        torque = sample_drive_torque(sample, crane) if self._whole(sample) else math.nan
         if not abs(sample.motor_speed) > self._moving or not math.isfinite(torque):
             return None
         (self._hoisting if sample.motor_speed > 0.0 else self._lowering).step(0.0, torque, dt)
@@ -230,8 +233,7 @@ class DriveByItself:
 
 # -- the inputs beside each other
 SPEED_TIME = 0.5  # s that the command and the speed may be apart
-# to and fro: jumps of this share of the largest speed, so many, within this time
-CHATTER_STEP, CHATTER_COUNT, CHATTER_TIME = 0.1, 4, 0.5
+CHATTER_STEP, CHATTER_COUNT, CHATTER_TIME = 0.1, 4, 0.5  # jumps of this share of the largest speed, so many, within s
 
 
 class Agreement:

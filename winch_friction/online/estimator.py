@@ -178,19 +178,25 @@ class EstimatorService:
 
     def status(self, now: float) -> dict[str, Any]:
         """The filter's state and counts, told true: without an input nothing is learned, whatever was said last."""
-        status = dict(self.law.status())
+        status = dict(self.law.status()) | {"rejection": ""}
         silent = self.last is None or self.inputs.silence(now) > self.options.watchdog_timeout
         if silent or self.missing:
             status["state"] = "waiting"
         elif self.contradiction:
             status["state"] = "contradicted"
         elif self.last is not None and not self.last.accepted:
-            status["state"] = "rejected"
+            status["state"], status["rejection"] = "rejected", self._rejection(self.last)
         status["missing"] = self.inputs.without_speed(now) if silent else ", ".join(self.missing)
         status["contradictions"] = self.contradiction
         status["enabled"], status["load_apart"] = self._enabled, self.law.load_apart
         status["suspicion"] = "; ".join(filter(None, (self._balance.suspicion, str(status["lateness"]))))
         return status
+
+    def _rejection(self, last: Estimate) -> str:
+        """Why a sample with all its inputs was not taken in, in words."""
+        if not math.isfinite(last.innovation):
+            return "stamp not after that of the last sample"
+        return f"motor_speed is more than {self.law.config.gate:g} sigma from what the drive torque makes of it"
 
     @property
     def gain_change(self) -> float:

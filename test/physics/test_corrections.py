@@ -572,3 +572,17 @@ def test_a_node_is_told_of_the_last_end_of_what_is_over(crane_150t, crane2_model
     corrector = SampleCorrector(crane_150t, replace(crane2_model, corrections=ended), since=1000.0)
     assert corrector.past == {"signal_delay": 700.0}
     assert past_corrections(corrector) == "signal_delay until 700 s"
+
+
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize("name", ["slip_leakage", "entrained_air"])
+def test_motors_that_are_swung_out_tell_no_lost_speed(name, truth, crane_150t, crane2_model):
+    """At a displacement of zero the commanded speed was without bound, with a warning of NumPy's."""
+    stroke = truth["active.displacement"].copy()
+    stroke[10:20], stroke[20:30] = 0.0, 0.009 * crane_150t.max_displacement
+    logged = replace(truth, columns={**truth.columns, "active.displacement": stroke})
+    correction = replace(typical(name, 1.0), groups=("active",))
+    run, _ = corrected(logged, crane_150t, replace(crane2_model, corrections=(correction,)))
+    assert np.isnan(run["speed_reference"][10:30]).all()
+    assert np.isfinite(run["speed_reference"][30:]).all()
+    assert np.isfinite(run["speed_reference"][:10]).all()

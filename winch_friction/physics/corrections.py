@@ -31,6 +31,7 @@ SIGNAL_ORDER = (
     Action.MASS, Action.HEAT, Action.WARMTH, Action.SLIP, Action.AIR,
 )  # fmt: skip
 S_HEIGHT = 6.0 * math.sqrt(3.0)  # times x (1 - x) (1 - 2 x): its extremes are -1 and 1
+LEAST_STROKE = 0.01  # of the largest displacement; the feedback's own error, 1 %, is all of what is shown below
 NEWTON_STEPS = 6  # an S of a tenth of what would fold it is exact to rounding after three
 
 
@@ -206,7 +207,7 @@ def _slip(columns: Columns, run: Run, c: Correction, crane: Crane) -> Columns:
     driving = driving_group(groups)
     drop = columns[f"{driving}.pressure_a"] - columns[f"{driving}.pressure_b"]
     thinness = 1.0 / relative_viscosity(columns["oil_temperature"]) if "oil_temperature" in columns else 1.0
-    lost = c.value * leakage_per_coefficient(c.name, drop, thinness) / columns[f"{driving}.displacement"]
+    lost = c.value * leakage_per_coefficient(c.name, drop, thinness) / _stroke(columns, driving, crane)
     return columns | {"speed_reference": columns["speed_reference"] - lost}
 
 
@@ -216,9 +217,16 @@ def _air(columns: Columns, run: Run, c: Correction, crane: Crane) -> Columns:
         return columns
     driving = driving_group(groups)
     taken = air_compressed(columns[f"{driving}.pressure_a"], columns[f"{driving}.pressure_b"])
-    swept = crane.motor_count(driving) * columns[f"{driving}.displacement"]
+    swept = crane.motor_count(driving) * _stroke(columns, driving, crane)
     lost = c.value * np.gradient(taken, columns["time"]) / swept
     return columns | {"speed_reference": columns["speed_reference"] - lost}
+
+
+def _stroke(columns: Columns, group: str, crane: Crane) -> FloatArray:
+    """The displacement, m^3/rad, by which lost oil becomes lost speed; NaN, and the speed with it, of motors that are
+    swung out: what little oil they swallow is no measure of how fast they turn."""
+    shown = columns[f"{group}.displacement"]
+    return np.where(np.abs(shown) > LEAST_STROKE * crane.max_displacement, shown, np.nan)
 
 
 _ON_RUNS: dict[Action, Callable[[Columns, Run, Correction, Crane], Columns]] = {

@@ -580,6 +580,7 @@ def test_motors_that_are_swung_out_tell_no_lost_speed(name, truth, crane_150t, c
     """At a displacement of zero the commanded speed was without bound, with a warning of NumPy's."""
     stroke = truth["active.displacement"].copy()
     stroke[10:20], stroke[20:30] = 0.0, 0.009 * crane_150t.max_displacement
+    stroke[40:50] = -0.05 * crane_150t.max_displacement  # past centre the oil tells it again
     logged = replace(truth, columns={**truth.columns, "active.displacement": stroke})
     correction = replace(typical(name, 1.0), groups=("active",))
     run, _ = corrected(logged, crane_150t, replace(crane2_model, corrections=(correction,)))

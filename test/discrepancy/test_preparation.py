@@ -112,6 +112,23 @@ def test_the_noise_of_a_feedback_does_not_swing_the_motors(crane_150t):
     assert found[0] == pytest.approx(150.0, abs=0.05)
 
 
+@pytest.mark.parametrize(("stroke", "reckoned"), [(0.5, True), (0.15, True), (0.08, False)])
+def test_motors_below_a_tenth_of_their_own_stroke_have_the_pressure_that_was_logged(crane_150t, stroke, reckoned):
+    """Above it the pressure that closes the balance counts, here of 20 t and no friction, and none that was logged."""
+    time = np.arange(0.0, 60.0, 0.02)
+    speed = 100.0 * np.clip(2.0 * np.sin(2.0 * np.pi * time / 30.0), -1.0, 1.0)
+    size, swung = len(time), stroke * crane_150t.max_displacement
+    run = Run("run", {
+        "time": time, "motor_speed": speed, "hook_load": np.full(size, 20e3),
+        "main.pressure_a": np.full(size, 150e5), "main.pressure_b": np.full(size, 25e5),
+        "main.displacement": np.full(size, swung),
+    })  # fmt: skip
+    (group,) = prepare(run, crane_150t, FrictionModel("bare", (), ())).groups
+    wanted = crane_150t.drum_torque(20e3) / crane_150t.gear_ratio / (group.count * swung) if reckoned else 125e5
+    steady = np.abs(speed) == 100.0
+    assert np.median(group.pressure[steady]) == pytest.approx(wanted, rel=0.01)
+
+
 def _kept(crane, quick):
     """Which of a minute and more at 10 Hz count, with this torque of inertia, N m."""
     time = 0.1 * np.arange(len(quick))

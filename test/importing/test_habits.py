@@ -125,9 +125,7 @@ def test_a_later_log_of_a_set_may_have_another_encoding(tmp_path, first, later):
     settings = read_text_log(tmp_path / "one.csv").settings
     made = LogMap({"wire_out": Entry("Seillänge [m]", "m")}, ("Zeit [s]",), log=settings)
     assert len(open_with_map(tmp_path / "two.csv", made)) == 50
-    with pytest.raises(
-        InputError, match=r"other\.csv: (no column 'Seillänge \[m\]'|cannot be read as|no rows of numbers)"
-    ):
+    with pytest.raises(InputError, match=r"other\.csv: no column 'Seillänge \[m\]'.*'Kabellänge \[m\]'"):
         open_with_map(tmp_path / "other.csv", made)
 
 

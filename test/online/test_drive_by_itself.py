@@ -47,12 +47,13 @@ def test_pressures_in_another_unit_are_no_pressures_of_a_winch_that_hoists(unit)
     assert when == pytest.approx(1.2, abs=0.2)
 
 
-def by_stroke(samples: Iterator[Sample], rail: float, dead: bool = False) -> Iterator[Sample]:
-    """The same torque at a pressure of `rail` Pa, set by the stroke; its feedback may be `dead`, about zero."""
+def by_stroke(samples: Iterator[Sample], rail: float, dead: bool = False, steady: float = 0.0) -> Iterator[Sample]:
+    """The same torque at a pressure of `rail` Pa, set by the stroke; its feedback may be `dead`, about a zero that is
+    off by a `steady` share of the largest."""
     for k, each in enumerate(samples):
         own = each.groups["main"]
         needed = own.displacement * (own.pressure_a - own.pressure_b) / rail
-        shown = 0.002 * FULL * math.sin(k) if dead else needed
+        shown = (steady + 0.002 * math.sin(k)) * FULL if dead else needed
         yield Sample(each.time, each.motor_speed, each.speed_reference,
                      {"main": GroupSample(rail + BOOST, BOOST, shown)})  # fmt: skip
 
@@ -71,13 +72,24 @@ def test_a_stroke_that_passes_through_zero_is_believed(load, friction):
 
 
 @pytest.mark.parametrize(("dead", "doubted"), [(False, False), (True, True)])
-def test_a_stroke_at_zero_is_doubted_before_it_is_said_and_one_that_passes_through_it_is_not(dead, doubted):
+@pytest.mark.parametrize("steady", [0.0, 0.0025])  # one about zero pulls down every other sample: another doubt
+def test_a_stroke_at_zero_is_doubted_before_it_is_said_and_one_that_passes_through_it_is_not(dead, doubted, steady):
     """What an estimator learns of a light load would never be believed, were every wave's passing a doubt."""
     each = DriveByItself(CRANE, ChannelRanges(CRANE, ("main",)))
-    samples = by_stroke(sea(4.5, lambda a, b: (a, b), 0.0, 120.0), 3e7, dead)
+    samples = by_stroke(sea(4.5, lambda a, b: (a, b), 0.0, 120.0), 3e7, dead, steady)
     said = [(each.contradiction(sample, PERIOD), each.pending) for sample in samples]
     assert not any(words for words, _ in said)
     assert any(pending for _, pending in said) == doubted
+
+
+@pytest.mark.parametrize(
+    ("ports", "stroke"), [((-BOOST, -325e5), FULL), ((BOOST, 325e5), -FULL)], ids=["ports", "stroke"]
+)
+def test_a_sign_is_no_lack_of_supply(ports, stroke):
+    """Ports of which both are shown below zero, or motors past centre: others say what is wrong there."""
+    each = DriveByItself(CRANE, ChannelRanges(CRANE, ("main",)))
+    sample = Sample(0.0, 100.0, 100.0, {"main": GroupSample(*ports, stroke)})
+    assert not {each.contradiction(sample, 0.1) for _ in range(80)} & {NONE_SAID, SWUNG_SAID}
 
 
 def test_of_motors_that_are_not_all_shown_some_may_be_swung_out():

@@ -53,6 +53,21 @@ def test_the_estimators_numbers_count_the_word_that_its_node_says_in_a_silence()
     assert own.record.run("r").aside["number"].tolist() == [1, 2, 4, 5]
 
 
+@pytest.mark.parametrize(("unit", "believed"), [(1.0, True), (1e5, False)])
+def test_no_torque_of_inputs_that_contradict_each_other_is_valid_in_a_replay(unit, believed):
+    """Its node marks it `invalid`: pressures in bar, while the winch hoists, are none of its drive."""
+    own = EstimatorVoice(CRANE, SEED, crane_topics(CRANE), ReplaySettings())
+    size, speed = 200, np.full(200, 50.0)
+    live = 1.0 + 1e-3 * np.sin(np.arange(size))  # readings that stand still are another doubt
+    columns = {"time": 0.02 * np.arange(size), "motor_speed": speed, "speed_reference": speed}
+    for name, each in GROUPS.items():
+        ports = {"pressure_a": each.pressure_a / unit, "pressure_b": each.pressure_b / unit}
+        columns |= {f"{name}.{k}": v * live for k, v in {**ports, "displacement": each.displacement}.items()}
+    list(own.take_rows(Run("r", columns)))
+    assert bool(own.service.contradiction) != believed
+    assert own.record.run("r").aside["valid"].tolist()[-50:] == [believed] * 50
+
+
 def voice(*phases):
     return CompensatorVoice(CRANE, SEED, crane_topics(CRANE), ReplaySettings(tuple(phases)))
 

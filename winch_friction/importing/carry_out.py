@@ -73,7 +73,7 @@ def open_with_map(path: Path, log_map: LogMap) -> Log:
             return _with_columns(read_log(path, {k: v for k, v in log_map.log.items() if k in keys}), wanted)
         except InputError as error:
             problems.append(error)
-    raise problems[min(1, len(problems) - 1)]  # the map's encoding, wherever its rows are
+    raise problems[-1]  # read as itself: what is missing is told in its own letters
 
 
 def _with_columns(log: Log, wanted: set[str]) -> Log:

@@ -7,15 +7,26 @@ from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
 
+import numpy as np
+
 from winch_friction.discrepancy.answer import AMBIGUOUS, MISSING, UNEXPLAINED
 from winch_friction.discrepancy.candidates.families import SURFACES, free_members
 from winch_friction.discrepancy.catalogue import another_in_each_run, of_one_group
-from winch_friction.discrepancy.expansion import Given, Split, as_rigid, meet, swings
-from winch_friction.discrepancy.proof import Trial, adds, at_the_floor, far_off, share_left, worse_runs
+from winch_friction.discrepancy.engine import FloatArray
+from winch_friction.discrepancy.engine.chance import chance_of_order, chance_of_zero_mean, rms
+from winch_friction.discrepancy.expansion import Given, Split, as_rigid, loads_by_balance, meet, swings
+from winch_friction.discrepancy.preparation.own_simulation import REFERENCE
+from winch_friction.discrepancy.preparation.prepare import PreparedRun
+from winch_friction.discrepancy.preparation.suspended_load import COURSE
+from winch_friction.discrepancy.proof import Trial, adds, at_the_floor, far_off, read_back, share_left, worse_runs
 from winch_friction.discrepancy.run_states import EACH_RUN
 from winch_friction.discrepancy.search import Search, Study, every_candidate, search_runs
 from winch_friction.discrepancy.standing import standing, tried
 from winch_friction.discrepancy.thresholds import LIMITS
+from winch_friction.physics.signals import Run
+
+LEAST_LOAD = 1.0  # kg, of which a share is told
+LEAST_EACH_WAY = 0.05  # of a run's samples, hoisting and lowering: of one way alone nobody tells a load from friction
 
 
 def by_surfaces(study: Study, trial: Trial) -> Trial:
@@ -126,6 +137,57 @@ def _locking(split: Split, showing: Sequence[str], kept: Sequence[str]) -> Split
     names = [run.name for run in split.runs]
     train, holdout = (tuple(name for name in names if (name in locked) is own) for own in (False, True))
     return replace(split, train=train, holdout=holdout)
+
+
+def by_levels(study: Study, trial: Trial) -> tuple[Study, Trial]:
+    """What nothing explains, once more with load cells that tell the course of a load but not its level, which is what
+    closes each run's balance. Study and trial as they are unless the locked runs are brought to their floor, and the
+    others near theirs, by levels that load cells are off by: small, another in each run, and of no signal.
+    """
+    given, runs = trial.search.given, study.split.runs
+    corrected = any("hook_load" in each.declared.channels for each in given.model.corrections)
+    if corrected or REFERENCE in runs[0].metadata or not all(map(_levels_show, runs, given.prepared)):
+        return study, trial
+    courses = tuple(replace(run, columns={COURSE if k == "hook_load" else k: v for k, v in run.columns.items()})
+                    for run in runs)  # fmt: skip
+    other = replace(study, split=replace(study.split, runs=courses))
+    proven = standing(other, search_runs(other, meet(courses, study.crane, given.model)))
+    if proven.search.verdict.kind == UNEXPLAINED or not at_the_floor(proven.holdout) or far_off(proven.train):
+        return study, trial
+    loads = loads_by_balance(courses, study.crane, read_back(proven.repaired.model))
+    off = np.array([float(np.nanmedian(run["hook_load"])) / max(loads[run.name], LEAST_LOAD) - 1.0 for run in runs])
+    return (other, replace(proven, levels=tuple(off))) if _of_load_cells(off, given.prepared) else (study, trial)
+
+
+def of_levels(levels: Sequence[float]) -> list[str]:
+    """What is said where load cells are not believed."""
+    low, high = (f"{100.0 * each:+.2g}" for each in (min(levels, default=0.0), max(levels, default=0.0)))
+    said = f"hook_load is off by another amount in each run, {low} to {high} % of the load, with no signal: each run's"
+    able = (
+        "load is the one that closes its balance, so that nothing that only adds to it could be told. Weigh each load"
+    )
+    return [f"{said} {able}, or check the cell's zero before each run"] if levels else []
+
+
+def _levels_show(run: Run, prepared: PreparedRun) -> bool:
+    """Whether a run has a load cell, and a balance that tells its level from friction."""
+    ways = prepared.direction[prepared.used]
+    both = min(np.mean(ways > 0.0), np.mean(ways < 0.0)) >= LEAST_EACH_WAY if len(ways) else False
+    return bool(both) and "hook_load" in run and not prepared.tension_measured
+
+
+def _of_load_cells(off: FloatArray, runs: Sequence[PreparedRun]) -> bool:
+    """Whether a share of the load by run is what load cells are off by: of no more than these may be, more than they
+    repeat to, about zero, and told by no signal that is another in each run."""
+    if np.abs(off).max() > LIMITS.most_level or rms(off) < LIMITS.at_the_floor * LIMITS.least_share_of_load:
+        return False
+    names = sorted(set.intersection(*(set(run.channels) for run in runs)))
+    told = [
+        [run.start for run in runs],
+        *([float(np.median(run.channels[n][run.used])) for run in runs] for n in names),
+    ]
+    ordered = [chance_of_order(np.array(each), off) for each in told]
+    return min(chance_of_zero_mean(off), *(len(told) * p for p in ordered)) >= LIMITS.level_p
 
 
 def without_swing(study: Study, given: Given, trial: Trial) -> Trial:

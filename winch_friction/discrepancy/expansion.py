@@ -14,7 +14,7 @@ from winch_friction.discrepancy.engine.blocks import Slot
 from winch_friction.discrepancy.engine.crossfit import CrossFit, Explanation
 from winch_friction.discrepancy.engine.problem import Layout
 from winch_friction.discrepancy.preparation.prepare import PreparedRun, prepare
-from winch_friction.discrepancy.preparation.suspended_load import Mode
+from winch_friction.discrepancy.preparation.suspended_load import COURSE, Mode
 from winch_friction.discrepancy.preparation.wires import agreed_modes, swinging_along
 from winch_friction.discrepancy.regressors import accounted, base_of, build_problem, correction_std, layout_of
 from winch_friction.discrepancy.thresholds import LIMITS
@@ -250,14 +250,20 @@ def with_room(
     return prior.with_values(values)
 
 
+def loads_by_balance(runs: Sequence[Run], crane: Crane, model: FrictionModel) -> dict[str, float]:
+    """Mass in kg per run without `hook_load`, as this model with its corrections closes the balance."""
+    right, own_crane = _corrected(runs, crane, model)
+    return estimated_loads(right, own_crane, model)
+
+
 def estimated_loads(runs: Sequence[Run], crane: Crane, model: FrictionModel) -> dict[str, float]:
     """Mass in kg per run without `hook_load`: what balances the torque once friction has its say.
 
     Hoisting and lowering weigh alike, so that friction cancels in the mean.
     """
-    if not crane.drive.hydraulic:
-        return {}
-    return {run.name: _estimated_load(run, crane, model) for run in runs if not WEIGHED & set(run.columns)}
+    unknown = [run for run in runs if not WEIGHED & set(run.columns)]
+    told = [run for run in unknown if crane.drive.hydraulic or COURSE in run]
+    return {run.name: _estimated_load(run, crane, model) for run in told}
 
 
 def _estimated_load(run: Run, crane: Crane, model: FrictionModel) -> float:

@@ -39,6 +39,7 @@ from winch_friction.discrepancy.engine.crossfit import Explanation
 from winch_friction.discrepancy.engine.problem import Base, Layout, Problem, problem_of
 from winch_friction.discrepancy.preparation.balance import SHOWS, SPARSEST, Accounted
 from winch_friction.discrepancy.preparation.prepare import PreparedRun
+from winch_friction.discrepancy.preparation.suspended_load import COURSE
 from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.physics.channels import GRAVITY
 from winch_friction.physics.friction import FrictionModel
@@ -264,8 +265,8 @@ def _blocks(run: PreparedRun, layout: Layout, size: int, length: float, into: Fl
         run.time, run.gap / run.unit_torque, regressors(run, layout, size), run.used, run.direction, run.channels,
         size, length, into,
     )  # fmt: skip
-    weighed = "hook_load" in run.present or not run.groups
-    first = weighed and not run.means  # whoever holds these runs holds the table as well, and nobody changes it
+    weighed = "hook_load" in run.present or not (run.groups or COURSE in run.present)
+    first = weighed and not run.means  # who holds these runs holds the table as well, and nobody changes it
     for slot in layout.slots if keep else ():
         own = into[slot.columns[0] : slot.columns[-1] + 1]
         run.means.setdefault(_kept_as(slot, layout, size), (slot.origin[0], Means((own if first else own.copy()).T)))
@@ -280,8 +281,7 @@ def least_noise_of(run: PreparedRun) -> float:
         # where a passive side carries the load, what a load cell is off by is many times as much of the driving side
         hangs = float(np.sqrt(np.mean(run.drum_torque**2))) / run.gear_ratio / run.unit_torque
         return float(np.hypot(own, LIMITS.least_share_of_load * hangs))
-    given = rms(run.drive_torque)
-    return LIMITS.least_share_of_torque * max(given, run.rated_torque) / run.unit_torque
+    return LIMITS.least_share_of_torque * max(rms(run.drive_torque), run.rated_torque) / run.unit_torque
 
 
 def accounted(run: PreparedRun, layout: Layout, explanation: Explanation) -> Accounted:

@@ -107,6 +107,9 @@ class Thresholds:
     knots: int = 7  # of the flexible model of one signal
     ridge: float = 30.0  # blocks; a hat needs more data than that before it moves
     remainder_p: float = 0.01  # family-wise, for a signal that predicts what is left
+    # of the load, that a load cell may be off by, from run to run: twice what pins in sheaves are stated with (1 %)
+    most_level: float = 0.02
+    level_p: float = 0.01  # family-wise, for a mean or a signal that tells such levels: then they are a cause's
     # -- verdict
     least_unexplained: float = 0.08  # share of the remainder that one signal must predict when no effect was found
     left_over: float = 0.15  # share of the excess over the noise floor that a named effect may leave

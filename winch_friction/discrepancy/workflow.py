@@ -92,6 +92,7 @@ def find_gap(runs: Sequence[Run], crane: Crane, model: FrictionModel, options: G
         lacking = insufficient([*checks, names], notes, crane, model, (given, split))
         return with_what_was_seen(lacking, assemble(study, trial))
     study, trial = _once_more(study, given, trial, search)
+    seed = try_seed(trial.search, study.rng) if trial.levels else seed
     options.told("planning")
     proposals: tuple[Proposal, ...] = ()
     if trial.search.verdict.kind == UNEXPLAINED and options.proposals:
@@ -134,7 +135,7 @@ def _once_more(study: Study, given: Given, trial: Trial, search: Search) -> tupl
     if trial.search.verdict.kind == UNEXPLAINED and swings(given):
         study.options.told("searching without a swing of the load")
         trial = again.without_swing(study, given, trial)
-    return study, trial
+    return again.by_levels(study, trial) if trial.search.verdict.kind == UNEXPLAINED else (study, trial)
 
 
 def _with_other_runs(study: Study, trial: Trial) -> tuple[Study, Trial]:
@@ -176,8 +177,8 @@ def assemble(study: Study, trial: Trial) -> GapResult:
         next_experiment=experiment.content() if experiment else None, untestable=search.untestable,
         next_scenario=experiment.text if experiment else "", model=_concluded(repaired.model, given.model, kind),
         notes=(
-            *_notes(runs, given.loads), *_amounts(repaired.model, runs),
-            *_times(repaired.model, given.model, runs), *repaired.cut,
+            *_notes(runs, {} if trial.levels else given.loads), *again.of_levels(trial.levels),
+            *_amounts(repaired.model, runs), *_times(repaired.model, given.model, runs), *repaired.cut,
             *(each.note for own in tied.values() for each in own.partners),
             *(_no_room(name, own.no_room) for name, own in tied.items() if own.no_room), *filter(None, [drift]), *left,
             *(_inexact(trial.holdout, goes_with, given.crane.drive.unit) if found else []),

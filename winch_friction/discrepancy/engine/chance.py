@@ -9,6 +9,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.special import stdtr
 
 from winch_friction.discrepancy.engine import FloatArray
 from winch_friction.discrepancy.engine.blocks import Slot, varies
@@ -262,6 +263,22 @@ def least_part(cross: CrossFit, every: Explanation, names: Iterable[str]) -> flo
     saved = max(cross.explain(()).loss - every.loss, 1e-9)
     rests = [tuple(slot for slot in every.slots if slot.name != name) for name in names]
     return min((cross.explain(rest).loss - every.loss) / saved for rest in rests)
+
+
+def chance_of_zero_mean(values: FloatArray) -> float:
+    """Two-sided p-value of Student's test that independent values have no mean."""
+    std = float(np.std(values, ddof=1)) / np.sqrt(len(values))
+    return float(2.0 * stdtr(len(values) - 1, -abs(float(np.mean(values))) / max(std, 1e-300)))
+
+
+def chance_of_order(one: FloatArray, other: FloatArray) -> float:
+    """Two-sided p-value of Spearman's test that two signals, one pair of values by run, have no order in common; 1
+    where either is the same in every run."""
+    from scipy.stats import spearmanr  # a third of a second, for few runs come here
+
+    if min(np.ptp(one), np.ptp(other)) <= 0.0:
+        return 1.0
+    return float(spearmanr(one, other).pvalue)
 
 
 def sign_flip_p_value(gains: FloatArray) -> float:

@@ -15,6 +15,7 @@ from winch_friction.physics.channels import GRAVITY
 from winch_friction.physics.signals import FloatArray
 from winch_friction.physics.winch import Crane
 
+COURSE = "hook_load_course"  # a load cell's column whose level, another in each run, is not believed: kg
 CONSTANT = 0.05  # a load cell's noise is not the load: a hanging mass that stays within 5 % is constant ...
 # ... but for the wire paid out, where the cell hangs below it: of the variance that the smoothed mass has beside the
 # load's acceleration, the share that a straight line over the length must explain, and what a metre may weigh, times
@@ -126,7 +127,8 @@ def heavy_by_tune(frequency: FloatArray, length: FloatArray, hanging: FloatArray
 
 
 def load_of(grid: Grid, motion: Motion, crane: Crane, known: float) -> SuspendedLoad:
-    """The load on a rigid wire; `known` kg where the run has neither `hook_load` nor a measured force (NaN: none)."""
+    """The load on a rigid wire; `known` kg where the run has neither `hook_load` nor a measured force (NaN: none): the
+    median of it, where the run tells its `COURSE`."""
     columns, size = grid.columns, len(grid.time)
     radius, heave = _radius(grid, crane), np.zeros(size)
     tension = _tension(grid, radius, crane)
@@ -137,9 +139,11 @@ def load_of(grid: Grid, motion: Motion, crane: Crane, known: float) -> Suspended
         heave = np.gradient(smooth(columns["heave_velocity"], motion.window), grid.dt)
     lever = radius / crane.gear_ratio
     acceleration = lever * motion.acceleration + heave
-    if "hook_load" in columns:
+    cell = columns.get("hook_load", columns.get(COURSE))
+    if cell is not None:
         length = columns.get("wire_out", -motion.angle * lever)
-        mass = _weighed(columns["hook_load"], length, acceleration, 5 * motion.window, crane)
+        mass = _weighed(cell, length, acceleration, 5 * motion.window, crane)
+        mass = mass if "hook_load" in columns or np.isnan(known) else mass + (known - np.median(mass))
     else:
         mass = np.full(size, 0.0 if np.isnan(known) else known)
     return SuspendedLoad(mass, radius, lever, acceleration, heave)

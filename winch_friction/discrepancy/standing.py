@@ -230,7 +230,8 @@ def tried(study: Study, search: Search) -> Trial:
     )  # fmt: skip
     repaired, gaps = given.once(key, partial(_polished_and_met, study, given, drafted))
     model = replace(repaired.model, provenance=drafted.model.provenance)
-    return Trial(search, replace(repaired, model=model), *(sized(each, study.rng) for each in gaps))
+    train, holdout = (sized(each, study.rng) for each in gaps)
+    return Trial(search, replace(repaired, model=model), train, holdout)
 
 
 def _polished_and_met(study: Study, given: Given, drafted: Repair) -> tuple[Repair, tuple[Side, Side]]:
@@ -245,8 +246,8 @@ def as_given(study: Study, search: Search) -> Trial:
     """The given model as it is, where a refit would only make it worse on the locked runs."""
     given, split = search.given, study.split
     model = replace(given.model, provenance={**given.model.provenance, **_provenance(study, search)})
-    sides = (compare(given, given, names, study.rng) for names in (split.train, split.holdout))
-    return Trial(search, Repair(model, {}), *sides)
+    train, holdout = (compare(given, given, names, study.rng) for names in (split.train, split.holdout))
+    return Trial(search, Repair(model, {}), train, holdout)
 
 
 def _provenance(study: Study, search: Search) -> Mapping[str, Any]:

@@ -26,7 +26,7 @@ def trial(kind, locked=FAR, train=FAR, law=EACH_RUN, names=("brake_drag",)):
         verdict=SimpleNamespace(kind=kind), given=None, selection=SimpleNamespace(found=[SimpleNamespace(slot=slot)]),
         flow=(), ripple=None, explanation=SimpleNamespace(names=names),
     )  # fmt: skip
-    return SimpleNamespace(search=search, holdout=side(locked), train=side(train))
+    return SimpleNamespace(search=search, holdout=side(locked), train=side(train), levels="")
 
 
 @pytest.mark.parametrize(
@@ -207,6 +207,7 @@ def test_what_has_several_names_is_held_against_an_error_of_one_group_as_what_ha
     monkeypatch.setattr(again, "by_groups", lambda study, found: calls.append(found) or found)
     monkeypatch.setattr(again, "without_implausible", lambda study, found, _: found)
     monkeypatch.setattr(again, "by_beyond", lambda study, found, _: (study, found))
+    monkeypatch.setattr(again, "by_levels", lambda study, found: (study, found))
     monkeypatch.setattr(workflow, "_with_other_runs", lambda study, found: (study, found))
     monkeypatch.setattr(workflow, "_surfaces_may_say_more", lambda search: False)
     monkeypatch.setattr(workflow, "swings", lambda given: False)

@@ -157,6 +157,7 @@ def test_only_names_that_fell_are_asked_beyond(monkeypatch, kind, searched, aske
     for name in ("by_groups", "by_surfaces"):
         monkeypatch.setattr(workflow.again, name, lambda study, own: own)
     monkeypatch.setattr(workflow.again, "without_implausible", lambda study, own, _: own)
+    monkeypatch.setattr(workflow.again, "by_levels", lambda study, own: (study, own))
     monkeypatch.setattr(workflow, "swings", lambda _: False)
     monkeypatch.setattr(workflow, "_surfaces_may_say_more", lambda _: False)
     search = SimpleNamespace(verdict=SimpleNamespace(kind=searched))

@@ -63,7 +63,7 @@ class Result:
 
 
 def trial(found, file=CLOSED):
-    return SimpleNamespace(search=found, repaired=SimpleNamespace(model=file))
+    return SimpleNamespace(search=found, repaired=SimpleNamespace(model=file), levels="")
 
 
 @pytest.fixture
@@ -90,6 +90,7 @@ def answers(monkeypatch):
     monkeypatch.setattr(again, "without_implausible", lambda study, trial, _: trial)
     monkeypatch.setattr(workflow, "_surfaces_may_say_more", lambda search: True)
     monkeypatch.setattr(again, "as_rigid", lambda given: RIGID)
+    monkeypatch.setattr(again, "by_levels", lambda study, trial: (study, trial))
     return own
 
 

@@ -156,17 +156,17 @@ def by_levels(study: Study, trial: Trial) -> tuple[Study, Trial]:
         return study, trial
     loads = loads_by_balance(courses, study.crane, read_back(proven.repaired.model))
     off = np.array([float(np.nanmedian(run["hook_load"])) / max(loads[run.name], LEAST_LOAD) - 1.0 for run in runs])
-    return (other, replace(proven, levels=tuple(off))) if _of_load_cells(off, given.prepared) else (study, trial)
+    return (other, replace(proven, levels=_said(off))) if _of_load_cells(off, given.prepared) else (study, trial)
 
 
-def of_levels(levels: Sequence[float]) -> list[str]:
-    """What is said where load cells are not believed."""
-    low, high = (f"{100.0 * each:+.2g}" for each in (min(levels, default=0.0), max(levels, default=0.0)))
-    said = f"hook_load is off by another amount in each run, {low} to {high} % of the load, with no signal: each run's"
-    able = (
-        "load is the one that closes its balance, so that nothing that only adds to it could be told. Weigh each load"
+def _said(off: FloatArray) -> str:
+    """Of load cells that are off by these shares of the load, by run."""
+    span = f"{100.0 * off.min():+.2g} to {100.0 * off.max():+.2g} % of the load"
+    return (
+        f"hook_load is off by another amount in each run, {span}, with no signal: each run's load is the one that "
+        "closes its balance, so that nothing that only adds to it could be told. Weigh each load, or check the cell's "
+        "zero before each run"
     )
-    return [f"{said} {able}, or check the cell's zero before each run"] if levels else []
 
 
 def _levels_show(run: Run, prepared: PreparedRun) -> bool:

@@ -34,7 +34,7 @@ class Trial:
     repaired: Repair
     train: Side
     holdout: Side
-    levels: tuple[float, ...] = ()  # by run, the share by which its load cell is off, where they are not believed
+    levels: str = ""  # what is said of load cells whose levels are not believed
 
 
 def read_back(model: FrictionModel) -> FrictionModel:

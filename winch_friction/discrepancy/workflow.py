@@ -177,10 +177,10 @@ def assemble(study: Study, trial: Trial) -> GapResult:
         next_experiment=experiment.content() if experiment else None, untestable=search.untestable,
         next_scenario=experiment.text if experiment else "", model=_concluded(repaired.model, given.model, kind),
         notes=(
-            *_notes(runs, {} if trial.levels else given.loads), *again.of_levels(trial.levels),
+            *_notes(runs, {} if trial.levels else given.loads), *filter(None, [trial.levels, drift]),
             *_amounts(repaired.model, runs), *_times(repaired.model, given.model, runs), *repaired.cut,
             *(each.note for own in tied.values() for each in own.partners),
-            *(_no_room(name, own.no_room) for name, own in tied.items() if own.no_room), *filter(None, [drift]), *left,
+            *(_no_room(name, own.no_room) for name, own in tied.items() if own.no_room), *left,
             *(_inexact(trial.holdout, goes_with, given.crane.drive.unit) if found else []),
         ),
     )  # fmt: skip

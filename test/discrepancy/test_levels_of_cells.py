@@ -194,6 +194,7 @@ def test_levels_stand_where_they_are_load_cells_and_bring_all_runs_to_their_floo
     monkeypatch.setattr(again, "standing", lambda study, search: replace(Trial(*[None] * 4), **vars(after)))
     monkeypatch.setattr(again, "search_runs", lambda study, given: asked.extend(study.split.runs))
     monkeypatch.setattr(again, "_of_load_cells", lambda off, prepared: of_cells)
+    monkeypatch.setattr(again, "_own_levels", lambda search: 1.1)
     given = meet([lifted(100.0, "hook_load")], CRANE, BARE)
     study = Study(Split(given.runs, (), ()), CRANE, GapOptions(), None)
     before = replace(Trial(*[None] * 4), search=SimpleNamespace(given=given))
@@ -215,6 +216,28 @@ def test_levels_are_not_asked_of_a_simulation_or_of_a_load_that_the_model_correc
         study = Study(Split((own,), (), ()), CRANE, GapOptions(), None)
         before = SimpleNamespace(search=SimpleNamespace(given=given))
         assert again.by_levels(study, before) == (study, before)
+
+
+@pytest.mark.parametrize(("level", "friction", "found"), [(0.0, 9.0, 0.0), (2.0, 9.0, 2.0), (-2.0, 0.0, 2.0)])
+def test_levels_of_runs_act_one_way_whatever_the_motion(level, friction, found):
+    """The third run only lowers: of it nobody tells one from friction."""
+    run, way = np.repeat([0, 1, 2], 30), np.where(np.arange(90) % 30 < 20, 1.0, -1.0)
+    way[run == 2] = -1.0
+    left = np.where(run == 0, level, -level) + friction * way
+    cross = SimpleNamespace(
+        problem=SimpleNamespace(blocks=SimpleNamespace(run=run, direction=way)),
+        remainder=lambda explanation: left if explanation == "base" else None,
+    )
+    assert again._own_levels(SimpleNamespace(cross=cross, explanation="base")) == pytest.approx(found)
+
+
+def test_levels_below_the_noise_are_not_asked(monkeypatch):
+    monkeypatch.setattr(again, "search_runs", lambda *_: pytest.fail("asked"))
+    monkeypatch.setattr(again, "_own_levels", lambda search: 0.99)
+    given = meet([lifted(100.0, "hook_load")], CRANE, BARE)
+    study = Study(Split(given.runs, (), ()), CRANE, GapOptions(), None)
+    before = SimpleNamespace(search=SimpleNamespace(given=given))
+    assert again.by_levels(study, before) == (study, before)
 
 
 def test_levels_are_said_once_by_their_ends():

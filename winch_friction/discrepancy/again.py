@@ -148,6 +148,8 @@ def by_levels(study: Study, trial: Trial) -> tuple[Study, Trial]:
     corrected = any("hook_load" in each.declared.channels for each in given.model.corrections)
     if corrected or REFERENCE in runs[0].metadata or not all(map(_levels_show, runs, given.prepared)):
         return study, trial
+    if _own_levels(trial.search) < 1.0:  # below the noise they are not what keeps the runs above their floor
+        return study, trial
     courses = tuple(replace(run, columns={COURSE if k == "hook_load" else k: v for k, v in run.columns.items()})
                     for run in runs)  # fmt: skip
     other = replace(study, split=replace(study.split, runs=courses))
@@ -174,6 +176,13 @@ def _levels_show(run: Run, prepared: PreparedRun) -> bool:
     ways = prepared.direction[prepared.used]
     both = min(np.mean(ways > 0.0), np.mean(ways < 0.0)) >= LEAST_EACH_WAY if len(ways) else False
     return bool(both) and "hook_load" in run and not prepared.tension_measured
+
+
+def _own_levels(search: Search) -> float:
+    """What the runs keep of levels that act one way whatever the motion, root mean square over runs, in noises."""
+    left, blocks = search.cross.remainder(search.explanation), search.cross.problem.blocks
+    ways = [[left[(blocks.run == k) & (blocks.direction * s > 0.0)] for s in (1.0, -1.0)] for k in set(blocks.run)]
+    return rms(np.array([np.mean([np.mean(each) for each in both]) for both in ways if all(map(len, both))]))
 
 
 def _of_load_cells(off: FloatArray, runs: Sequence[PreparedRun]) -> bool:

@@ -127,8 +127,9 @@ def test_a_corrections_name_holds_all_that_it_is_restricted_to():
 # -- how large things are on a machine
 def turning(motors=(20, 2), radius=1.0, speed=REFERENCE_SPEED, gear=440.0, swept=2.0):
     return SimpleNamespace(
-        groups=[SimpleNamespace(count=count) for count in motors],
-        constants=(("max_displacement", swept * REFERENCE_MOTOR),), gear_ratio=gear, radius=np.array([0.5, radius]), speed=np.full(9, -speed), inertia=3.0 * REFERENCE_INERTIA,
+        groups=[SimpleNamespace(count=count) for count in motors], gear_ratio=gear, radius=np.array([0.5, radius]),
+        constants=(("max_displacement", swept * REFERENCE_MOTOR),), speed=np.full(9, -speed),
+        inertia=3.0 * REFERENCE_INERTIA,
     )  # fmt: skip
 
 
@@ -327,3 +328,22 @@ def test_an_effect_is_accounted_for_where_it_changes_what_the_driving_motors_car
     found = accounted(SimpleNamespace(time=np.zeros(3)), layout, explanation)
     for name in ("missing_torque", "passive_error", "passive_stroke_error"):
         assert getattr(found, name).tolist() == ([50.0, 700.0, 750.0] if name == where else [0.0] * 3)
+
+
+@pytest.mark.parametrize(("given", "rated", "least"), [(300.0, 900.0, 0.45), (-1200.0, 900.0, 0.6)])
+def test_a_drive_without_pressures_closes_to_a_thousandth_in_the_unit_of_its_gap(given, rated, least):
+    run = SimpleNamespace(groups=[], drive_torque=np.full(4, given), rated_torque=rated, unit_torque=2.0)
+    assert module.least_noise_of(run) == pytest.approx(least)
+
+
+def test_places_of_a_models_own_curve_bend_by_what_they_are_worth_beside_each_other(monkeypatch):
+    """Scales of 1, 2 and 4, of a median of 2: a place with half the scale moves half as much per unit."""
+    monkeypatch.setattr(module, "bending", lambda _: np.ones((3, 3)))
+    parameters = tuple(SimpleNamespace(name=name) for name in ("level", "a", "b", "c"))
+    model = SimpleNamespace(
+        parameter_names=("C2", "level", "c", "b", "a"),
+        terms=[SimpleNamespace(table=None), SimpleNamespace(table="table", parameters=parameters)],
+    )
+    ((columns, form),) = module._curves_of(model, np.array([9.0, 9.0, 4.0, 2.0, 1.0]))
+    assert columns == (4, 3, 2)
+    np.testing.assert_allclose(form, np.outer([0.5, 1.0, 2.0], [0.5, 1.0, 2.0]))

@@ -20,6 +20,7 @@ from winch_friction.discrepancy.engine.crossfit import (
     heads,
     on_their_own,
     other_start,
+    reshaped,
 )
 from winch_friction.discrepancy.engine.problem import Base, Layout, Problem
 from winch_friction.discrepancy.thresholds import LIMITS
@@ -431,3 +432,18 @@ def test_what_is_left_inside_is_the_square_above_the_noise_and_what_matters_to_n
     )
     assert CrossFit.inside_excess(cross, None) == pytest.approx((3.0 + 1.0 + 3.0 - 0.5) / 4.0)
     assert CrossFit.inside_excess(cross, None, np.array([True, False, True, False])) == pytest.approx(3.0)
+
+
+def test_a_law_is_shaped_anew_within_what_it_speaks_of_beside_the_others_as_they_are_then():
+    """Another group's feedback has laws of its own, however well they fit."""
+    first, second = (Slot("zero", f"shape {k}", (k,), law="bent", part="1") for k in (1, 2))
+    strange = [Slot("zero", "", (3,), law="bent", part="2"), Slot("zero", "", (4,), part="1"), Slot("gain", "", (5,))]
+    other, wider = Slot("wave", "narrow", (6,)), Slot("wave", "wide", (7,))
+    losses = {first: 5.0, second: 4.0, other: 2.0, wider: 1.0, **dict.fromkeys(strange, 0.1)}
+    cross = SimpleNamespace(
+        problem=SimpleNamespace(slots=(first, second, *strange, other, wider)),
+        # wide pays off beside the second shape alone
+        train_loss=lambda slots: (sum(losses[s] + 3.0 * (s is wider and second not in slots) for s in slots), None),
+    )
+    assert reshaped(cross, (first, other)) == (second, wider)
+    assert reshaped(cross, (other, first)) == (other, second)

@@ -182,3 +182,37 @@ def test_a_set_that_leaves_out_more_names_than_it_has_room_for_tells_them_all():
     assert Selection(base, final, (crowd, replace(crowd, slot=TWO, rivals=()))).untold == (
         "one is not told from r, a, b, c, d; two is not told from a, b, c, d"
     )
+
+
+def test_what_is_taken_is_as_sure_as_it_is_itself_and_not_as_the_surest_beside_it(monkeypatch):
+    """The one that takes less is surer."""
+    trials = [explained((ONE,), 900.0), explained((TWO,), 500.0)]
+    monkeypatch.setattr(module, "candidate_trials", lambda *_: trials)
+    monkeypatch.setattr(module, "_evidence", lambda *_: np.array([1e-4, 7e-4]))
+    monkeypatch.setattr(module, "_exchanged", lambda _, own: own)
+    cross = SimpleNamespace(gain=lambda *_: 0.3, inside_gain=lambda *_: 0.3, problem=SimpleNamespace(slots=(ONE, TWO)))
+    considered, p_values = [], {}
+    assert _forward(cross, explained((), 2000.0), explained((), 2000.0), RNG, 1, considered, p_values) is trials[1]
+    assert p_values == {"two": 7e-4}
+    assert [(each.name, each.p_value, each.verdict) for each in considered] == [
+        ("two", 7e-4, module.TAKEN),
+        ("one", 1e-4, "significant and useful, but outdone in held-out loss by the one taken"),
+    ]
+
+
+@pytest.mark.parametrize(("segments", "as_good"), [(1, True), (40, False)])
+def test_plain_effects_that_are_worse_in_every_segment_are_not_worse_by_chance(segments, as_good):
+    """By as much in all; in one segment alone it may be chance."""
+    behind = np.where(np.arange(40) < segments, 100.0 / segments, 0.0)
+    other = replace(explained((TWO,), 0.0), losses=np.full(40, 10.0))
+    assert _no_worse(replace(explained((ONE,), 0.0), losses=other.losses + behind), other, RNG) is as_good
+    assert _no_worse(replace(other, losses=other.losses - behind), other, RNG)
+
+
+@pytest.mark.parametrize(
+    ("gain", "level"),
+    [(0.5, 0.05), (0.1, 0.05), (0.0999, 0.01), (0.02, 0.01), (0.0199, 1e-3), (0.01, 1e-3), (0.001, 1e-3)],
+)
+def test_a_gain_has_the_level_of_the_least_that_it_reaches(gain, level):
+    surer, less = (module._significant(np.array([p]), np.array([gain])).tolist() for p in (level, 1.01 * level))
+    assert (surer, less) == ([True], [False])

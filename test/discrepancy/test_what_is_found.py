@@ -216,3 +216,50 @@ def test_plain_effects_that_are_worse_in_every_segment_are_not_worse_by_chance(s
 def test_a_gain_has_the_level_of_the_least_that_it_reaches(gain, level):
     surer, less = (module._significant(np.array([p]), np.array([gain])).tolist() for p in (level, 1.01 * level))
     assert (surer, less) == ([True], [False])
+
+
+def test_an_effect_that_was_never_asked_alone_is_as_sure_as_what_it_saves_of_each_segment(monkeypatch):
+    losses = {(): 400.0, (ONE,): 100.0}
+    cross = SimpleNamespace(explain=lambda slots: explained(slots, losses[tuple(slots)]), gain=lambda *_: 0.5)
+    monkeypatch.setattr(module, "rivals_of", lambda *_, same: ((), 1.0))
+    assert _found(cross, cross.explain((ONE,)), 0, {}, RNG).p_value == pytest.approx(1.0 / (1.0 + LIMITS.flips))
+
+
+def test_what_could_stand_for_a_second_law_of_a_cause_is_no_other_name_for_it():
+    first = Finding(ONE, (TWO,), 0.0, 0.1, 1.0, tuple("abcd"))
+    again = replace(first, slot=replace(ONE, law="bent"))
+    other = replace(first, slot=TWO)
+    found = module._one_set_each((first, again, other))
+    assert [(len(each.rivals), len(each.no_room)) for each in found] == [(1, 4), (0, 0), (1, 4)]
+    assert [each.slot.law for each in found] == ["", "bent", ""]
+
+
+@pytest.mark.parametrize(
+    ("together", "anew", "taken"),
+    [(90.0, None, "together"), (110.0, None, "one"), (110.0, 20.0, "anew"), (110.0, 90.0, "one"), (90.0, 20.0, "anew")],
+)
+def test_what_begins_otherwise_is_taken_where_it_leaves_less(monkeypatch, together, anew, taken):
+    """One by one 100 are left; of plain effects all together less will do, of another first cause it must be half."""
+    names = {name: Slot(name, "", (k,)) for k, name in enumerate(("one", "together", "anew"), start=1)}
+    losses = {"one": 100.0, "together": together, "anew": anew}
+    base = explained((), 1000.0)
+    begun = {0.0: "one", 1.0: "together", 2.0: "anew"}
+    start = explained((TWO,), 1.0)
+
+    def forward(cross, base, start, rng, most, considered, p_values):
+        name = begun[start.loss if start.slots else 0.0]
+        considered.append(name)
+        p_values[name] = 0.01
+        return explained((names[name],), losses[name])
+
+    monkeypatch.setattr(module, "_forward", forward)
+    monkeypatch.setattr(module, "_whole", lambda cross, own, rng, apart: own)
+    monkeypatch.setattr(module, "_plain_together", lambda *_: start)
+    monkeypatch.setattr(module, "other_start", lambda *_: None if anew is None else explained((TWO,), 2.0))
+    monkeypatch.setattr(module, "far_less", lambda cross, new, old: new.loss <= 0.5 * old.loss)
+    monkeypatch.setattr(
+        module, "_found", lambda cross, own, k, p, rng: Finding(own.slots[k], (), p[own.names[0]], 0, 1)
+    )
+    found = module.select(SimpleNamespace(explain=lambda _: base), RNG)
+    assert (found.base, found.final.names, found.found[0].p_value) == (base, (taken,), 0.01)
+    assert list(found.considered) == ["one"] + ["together"] * (together == 90.0) + ["anew"] * (taken == "anew")

@@ -20,6 +20,7 @@ from winch_friction.physics.channels import GRAVITY
 from winch_friction.physics.signals import Run
 
 SIZE, DT = 400, 0.05
+RIGID = Mode(0.0, 0.0)
 TIME = DT * np.arange(SIZE)
 
 
@@ -189,7 +190,7 @@ def test_a_beginning_that_swings_twice_as_much_as_the_rest_is_left_out(louder, u
     assert (kept == (time > 0.2 * time[-1])).all() if left_out else kept.all()
 
 
-def swinging(monkeypatch, mass=4e4, found=Mode(0.0, 0.0), wire=0.0, stiffness=4e8, out=100.0, moving=None):
+def swinging(monkeypatch, mass=4e4, found=RIGID, wire=0.0, stiffness=4e8, out=100.0, moving=None):
     asked = []
     monkeypatch.setattr(module, "_other_causes", lambda *_: "causes")
     monkeypatch.setattr(
@@ -282,3 +283,41 @@ def test_columns_that_nobody_knows_are_channels_by_the_runs_own_clock_where_they
     assert found["valve"] == pytest.approx(0.5 * steps)
     assert found["state"] == pytest.approx(steps)
     assert not {"word", "short"} & set(found)
+
+
+# -- what a slow log can follow
+def follows(bend, dt=0.1, mode=RIGID, hydraulic=True, moving=None, where=None):
+    """Samples of a torque of 2 kg m^2 and of a load that bends by so much, N m, from one sample to the next; 20 N m are
+    a bar."""
+    curve = 0.5 * np.arange(SIZE) ** 2
+    bends = np.where(np.ones(SIZE, bool) if where is None else where, 1.0, 0.0)
+    motion = SimpleNamespace(acceleration=0.25 * bend * curve * bends, used=TIME >= 0 if moving is None else moving)
+    crane = SimpleNamespace(inertia=2.0, drive=SimpleNamespace(hydraulic=hydraulic))
+    load, balance = SimpleNamespace(inertial_torque=0.5 * bend * curve * bends), SimpleNamespace(unit_torque=20.0)
+    return module._followed(SimpleNamespace(dt=dt, time=TIME), motion, load, balance, crane, mode)
+
+
+@pytest.mark.parametrize(
+    ("bend", "more", "followed"),
+    [
+        (35.0, {}, True),  # a twelfth of 36 N m is what shows: 3 N m, 0.15 bar
+        (37.0, {}, False),
+        (-37.0, {}, False),
+        (37.0, {"hydraulic": False}, True),  # what a current tells is rougher
+        (37.0, {"dt": 0.05}, True),  # of a usual log
+        (37.0, {"dt": 0.05, "mode": Mode(12.0, 0.0)}, True),  # a wire that does not give rings nowhere
+        (37.0, {"dt": 0.05, "mode": Mode(12.0, 0.05)}, False),
+        (37.0, {"dt": 0.05, "mode": Mode(9.0, 0.05)}, True),
+    ],
+)
+def test_a_sample_is_followed_where_the_torque_bends_by_less_than_shows(bend, more, followed):
+    found = follows(bend, **more)
+    assert found[:-9].all() if followed else not found[2:-2].any()  # the last one ends in a kink
+
+
+@pytest.mark.parametrize(("share", "some"), [(0.04, False), (0.2, True)])
+def test_of_a_motion_that_is_hardly_ever_followed_nothing_is(share, some):
+    """A twentieth of what moves; how well a standing shaft is followed says nothing."""
+    moving = np.arange(SIZE) >= SIZE // 2
+    own = np.arange(SIZE) >= SIZE // 2 * (1.0 + share)
+    assert follows(90.0, moving=moving, where=own)[moving].any() is np.bool_(some)

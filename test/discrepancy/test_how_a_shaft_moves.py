@@ -183,6 +183,15 @@ def test_a_contact_slides_once_the_shaft_has_surely_come_back(monkeypatch):
     assert motion.used[between(gone + 0.03, 0.42)].all()
 
 
+def test_a_slow_contact_slides_once_half_more_is_gone_than_may_be_the_encoders_own(monkeypatch):
+    """At 2 rad/s a turn back by 1 rad counts after half a second, and has begun to slide a quarter later."""
+    monkeypatch.setattr(module, "resolution", lambda *_: 1.0)
+    motion, since = moved(np.where(TIME < 20.0, 100.0 * np.minimum(20.0 - TIME, 1.0), -2.0), True), TIME - 20.0
+    assert not motion.used[(since > 0.0) & (since < 0.7)].any()
+    assert motion.used[(since > 0.85) & (since < 1.4)].all()
+    assert not motion.used[since > 1.7].any()
+
+
 @pytest.mark.parametrize(("creeps", "used"), [(0.4, True), (0.05, False)])
 @pytest.mark.parametrize("sign", [1.0, -1.0])
 def test_what_creeps_after_a_reversal_counts_for_three_seconds_and_no_slower_than_it_has_a_direction(

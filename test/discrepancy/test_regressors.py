@@ -143,7 +143,7 @@ def test_sizes_go_with_the_motors_their_number_the_lift_and_the_inertia():
     assert found[LINE] == pytest.approx(1.0 / 16.0)  # at a fixed flow, by its square
     assert (found[PORT], found[CHURNING], found[OF_DRUM]) == pytest.approx((2.0, 2.0, 1.0))
     larger = machine_sizes([turning(radius=2.0), turning(radius=4.0)])
-    assert larger["kg"] == pytest.approx(4.0 * 440.0 / 4.0 / REFERENCE_LIFT)
+    assert larger["kg"] == larger["kg/m"] == pytest.approx(4.0 * 440.0 / 4.0 / REFERENCE_LIFT)
 
 
 @pytest.mark.parametrize(("speed", "slow"), [(REFERENCE_SPEED / 4.0, 4.0), (3.0, REFERENCE_SPEED / 20.0)])
@@ -316,15 +316,16 @@ def test_what_a_weight_could_explain_is_taken_out_where_nobody_weighed_a_hydraul
 def test_an_effect_is_accounted_for_where_it_changes_what_the_driving_motors_carry(
     monkeypatch, kind, carried, of_stroke, where
 ):
-    """The second of two effects, of two amounts each: 5 and 7 of scales of 10 and 100."""
+    """The second of three effects, of two amounts: 5 and 7 of scales of 10 and 100."""
     slots = [
         Slot(name, "", columns, origin=(Candidate(name, kind=own, of_stroke=of_stroke), Shape("", carried=carried)))
-        for name, columns, own in (("first", (2, 3), "signal"), ("second", (4, 5), kind))
+        for name, columns, own in (("first", (2, 3), "signal"), ("second", (4, 5), kind), ("third", (6,), "load"))
     ]
     columns = {"first": np.zeros((3, 2)), "second": np.array([[1.0, 0.0], [0.0, 1.0], [1.0, 1.0]])}
+    columns["third"] = np.zeros((3, 1))
     monkeypatch.setattr(module, "slot_columns", lambda run, slot: columns[slot.name])
-    layout = SimpleNamespace(base=BASE, scales=np.array([9.0, 9.0, 9.0, 9.0, 10.0, 100.0]))
-    explanation = SimpleNamespace(slots=slots, beta=np.array([1.0, 1.0, 2.0, 3.0, 5.0, 7.0]))
+    layout = SimpleNamespace(base=BASE, scales=np.array([9.0, 9.0, 9.0, 9.0, 10.0, 100.0, 9.0]))
+    explanation = SimpleNamespace(slots=slots, beta=np.array([1.0, 1.0, 2.0, 3.0, 5.0, 7.0, 4.0]))
     found = accounted(SimpleNamespace(time=np.zeros(3)), layout, explanation)
     for name in ("missing_torque", "passive_error", "passive_stroke_error"):
         assert getattr(found, name).tolist() == ([50.0, 700.0, 750.0] if name == where else [0.0] * 3)

@@ -297,6 +297,7 @@ SURE, UNSURE = ([Dependence("speed", 0.2, p)] for p in (1e-3, 0.02))
         ((1.0, 200.0), (0.5, 0.0), SURE, 50),  # the steady blocks are held against the steady ones
         ((200.0, 200.0), (0.0, 2.0), SURE, None),  # what swings: more than noise, and a hundredth of what was there
         ((4.0, 4.0), (0.0, 2.0), SURE, 25),
+        ((1.0, 1.0), (0.0, 0.6), SURE, None),  # three tenths of the noise are nobody's effect
         ((1.0, 99.0), (0.8, 9.2), SURE, 80),  # said is the larger share of the two, here of the steady blocks
         ((99.0, 1.0), (9.2, 90.8), SURE, 100),
     ],
@@ -344,3 +345,10 @@ def test_what_else_was_said_is_written_as_it_was_said():
     assert (content["notes"], content["provenance"]) == (["slow log"], {"seed": 3})
     assert content["seed_refuted"] == [{"parameter": "K4"}]
     assert list(content["adequacy"][0].values()) == ["rate", 20.0, 5.0, "Hz", True]
+
+
+def test_the_shaft_is_steady_by_a_share_of_its_largest_acceleration_and_not_of_its_usual_one():
+    """Six blocks of ten hardly accelerate, the others fifty times as much."""
+    calm = np.arange(SIZE) < 600
+    found = steady_excess(crossed(np.where(calm, 0.02, 1.0)), np.sqrt(1.0 + np.where(calm, 0.5, 7.0)))
+    assert found == pytest.approx(0.5)

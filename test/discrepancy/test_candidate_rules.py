@@ -175,7 +175,7 @@ def test_a_feedbacks_curve_bends_between_displacements_of_which_each_run_has_one
     (shape,) = feedback._curve_shapes(runs)
     at = [shape.values[f"beyond_{k}"] for k in (1, 2, 3)]
     assert at == pytest.approx(np.quantile([0.2e-5, 0.4e-5, 0.6e-5, 0.8e-5, 0.9e-5], (0.1, 0.4, 0.7)))
-    assert feedback._curve_shapes([swung(share) for share in (0.2, 0.2, 0.2, 0.2, 0.2, 0.2, 0.2, 0.5, 0.8)]) == []
+    assert feedback._curve_shapes([swung(share) for share in (0.2, 0.2, 0.2, 0.2, 0.2, 0.5, 0.6, 0.7, 0.8)]) == []
 
 
 # -- friction

@@ -319,8 +319,8 @@ def test_air_is_judged_on_each_run_by_the_volume_of_the_others(monkeypatch):
 def test_air_is_looked_for_where_the_driving_motors_hardly_swivel_in_segments_without_their_ends(
     monkeypatch, swings, looked_at
 ):
-    """31 seconds less three at either end are five segments of five; what air takes is swept by all of the motors."""
-    time = 0.01 * np.arange(3101)
+    """34 seconds less three at either end are five segments of five; what air takes is swept by all of the motors."""
+    time = 0.01 * np.arange(3401)
     asked = {}
 
     def regressors(wanted, reached, drop, air, oil, side, dt):
@@ -328,13 +328,13 @@ def test_air_is_looked_for_where_the_driving_motors_hardly_swivel_in_segments_wi
         return np.ones((len(wanted), 1)), np.sin(np.arange(len(wanted))), np.cos(np.arange(len(wanted)) + 0.5)
 
     monkeypatch.setattr(flow_balance, "_regressors", regressors)
-    lower = np.where(np.arange(3101) < 1500, 5e6, 2e7)
+    lower = np.where(np.arange(3401) < 1500, 5e6, 2e7)
     columns = {"speed_reference": 50.0 + 0.0 * time, "motor_speed": 49.0 + 0.0 * time}
     columns |= {"main.pressure_a": 1e7 + 0.0 * time, "main.pressure_b": lower}
     columns |= {"main.displacement": 3e-5 * (1.0 + swings * np.sqrt(2.0) * np.sin(7.0 * time))}
     run = Run("r", {"time": time, **columns})
     prepared = SimpleNamespace(groups=[SimpleNamespace(name="main", count=4, balances=True)])
-    rows = flow_balance._sums(run, prepared, 6, slice(0, 3101))
+    rows = flow_balance._sums(run, prepared, 6, slice(0, 3401))
     assert len(rows) == 5 * looked_at
     if not looked_at:
         return
@@ -356,3 +356,34 @@ def test_the_lost_speed_is_what_was_wanted_and_not_reached(monkeypatch):
     inside = slice(50, -50)
     assert lost[inside] == pytest.approx((wanted - reached)[inside], rel=1e-6)
     assert taken[inside] == pytest.approx(3.0 / 399 / 0.02, rel=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("beside", "alone", "leak", "holds"),
+    [
+        (0.0, 0.0, 1.0, True),
+        (0.0, 0.0, 0.0, False),  # which takes nothing off
+        (0.0, 1.0, 1.0, False),  # an error of the scale alone does as much: nothing is left to a leak
+        (0.5, 0.0, 1.0, False),  # the error of the scale that goes with it takes of what it is not
+    ],
+)
+def test_a_leak_is_held_against_the_error_of_the_scale_alone(beside, alone, leak, holds):
+    """Rows of which each loses 2 rad/s at 2 rad/s, and as much per unit of a leak."""
+    rows = np.zeros((30, 4 + len(LEAKAGE_LAWS)))
+    rows[:, 0], rows[:, 1], rows[:, 2], rows[:, 4] = np.arange(30) % 3, 2.0, 2.0, 2.0
+    law = next(iter(LEAKAGE_LAWS))
+    own = Leakage({law: (leak, 0.1)}, 9.0, 0.1, 0.0, 1.0, 0.1, beside=(beside,), alone=(alone,))
+    assert bool(own.explains(rows)) is holds
+
+
+def test_what_two_laws_cost_together_is_as_sure_as_they_are_together():
+    """Laws that stand in for each other are each known badly and their sum well; before is foretold by other runs."""
+    drawn = table({"slip_leakage": 2e-11, "isoviscous_leakage": 2e-11}, 0.02, noise=0.02)
+    found = leakage_of(drawn, lost_flow.STEADY_COMMAND, FULL)
+    assert len(found.leakage) == 2
+    apart = np.hypot(*(std for _, std in found.leakage.values())) * REFERENCE_PRESSURE / FULL
+    assert 0.0 < found.slip_std < 0.8 * apart
+    lost, speed, run = drawn[:, 1], drawn[:, 2], drawn[:, 0]
+    held = np.concatenate([lost[run == k] - speed[run == k] * (speed[run != k] @ lost[run != k]) /
+                           (speed[run != k] @ speed[run != k]) for k in range(RUNS)])  # fmt: skip
+    assert found.before == pytest.approx(np.sqrt(np.mean(held**2)))

@@ -364,7 +364,7 @@ def test_the_lost_speed_is_what_was_wanted_and_not_reached(monkeypatch):
         (0.0, 0.0, 1.0, True),
         (0.0, 0.0, 0.0, False),  # which takes nothing off
         (0.0, 1.0, 1.0, False),  # an error of the scale alone does as much: nothing is left to a leak
-        (0.5, 0.0, 1.0, False),  # the error of the scale that goes with it takes of what it is not
+        (1.5, 0.0, 1.0, False),  # with an error of the scale beside it that takes more than there is
     ],
 )
 def test_a_leak_is_held_against_the_error_of_the_scale_alone(beside, alone, leak, holds):

@@ -1,5 +1,6 @@
 """A ripple over the shaft's angle, by figures: which line stands out, how surely, and in what of the torque."""
 
+from dataclasses import dataclass
 from types import SimpleNamespace
 
 import numpy as np
@@ -7,6 +8,7 @@ import pytest
 from scipy.special import gammaincc
 
 from winch_friction.discrepancy.detectors import ripple as module
+from winch_friction.discrepancy.detectors import ripple_waves
 from winch_friction.discrepancy.detectors.ripple import AsLogged, Line, Ripple
 from winch_friction.physics.signals import Run
 
@@ -178,3 +180,77 @@ def test_a_line_holds_in_other_runs_by_its_chance_among_the_lines_near_it(monkey
         assert not module.line_holds(7.5, [(one,) * 4] * 2)
     assert gammaincc(2, 11.8) * near.sum() > 1e-3 > gammaincc(2, 14.0) * near.sum()
     assert gammaincc(2, 11.8) < 1e-3
+
+
+# -- one ripple for all runs
+@dataclass(frozen=True)
+class Own:
+    """What a wave is taken out of."""
+
+    gap: np.ndarray
+    used: np.ndarray
+    angle: np.ndarray
+    drum_torque: np.ndarray
+    gear_ratio: float = 100.0
+    name: str = "r"
+
+
+def test_a_wave_that_is_taken_out_of_a_run_leaves_what_else_its_gap_has():
+    angle = np.linspace(0.0, 60.0, SIZE)
+    wave = 4e3 * (2e-3 * np.sin(7.0 * angle) - 1e-3 * np.cos(7.0 * angle))
+    run = Own(5.0 * np.cos(angle) + wave, np.arange(SIZE) > 9, angle, np.full(SIZE, 4e5))
+    line = Ripple(7.0, 1e-3, 1e-5, 1e-12, 9.0)
+    (shares,) = ripple_waves.waves_of([run], line).values()
+    assert shares == pytest.approx([2e-3, -1e-3], abs=1e-4)
+    found = ripple_waves.without_ripple(run, line, np.array([2e-3, -1e-3]))
+    assert found.gap == pytest.approx(5.0 * np.cos(angle))
+
+
+def shared(monkeypatch, *phases, order=7.0, present=("shaft_angle",)):
+    """Runs with a wave of 2e-3 of 4 kN m each, of these phases; their line was seen a little beside it."""
+    angle = np.linspace(0.0, 300.0, 3000)
+    beside, static = 0.1 * np.cos(31.0 * angle), np.full(3000, 4e3)
+    tables = iter([(angle, 8.0 * np.sin(order * angle + phase) + beside, static) for phase in phases])
+    monkeypatch.setattr(ripple_waves, "_unsmoothed", lambda *_: next(tables))
+    runs = [SimpleNamespace(used=np.ones(3, bool), drum_torque=np.ones(3), present=frozenset(present)) for _ in phases]
+    runs[0].present = frozenset({"shaft_angle"})
+    line = Ripple(order + 0.01, 1e-3, 1e-5, 1e-12, 9.0)
+    return ripple_waves.in_phase(runs, runs, None, line)
+
+
+@pytest.mark.parametrize("phase", [0.0, 1.1, -2.0])
+def test_one_ripple_of_all_runs_has_their_phase_their_size_and_an_order_of_its_own(monkeypatch, phase):
+    found = shared(monkeypatch, phase, phase, phase)
+    assert found["a_r"].value == pytest.approx(2e-3 * np.cos(phase), abs=2e-5)
+    assert found["b_r"].value == pytest.approx(2e-3 * np.sin(phase), abs=2e-5)
+    assert found["k_r"].value == pytest.approx(7.0, abs=1e-4)
+    assert found["k_r"].std == pytest.approx(0.1 * np.pi / 300.0)  # a tenth of a quarter of a line's width
+    assert found["a_r"].std == found["b_r"].std < 2e-6
+
+
+@pytest.mark.parametrize(("apart", "one"), [(np.pi / 3.0, True), (np.pi * 5.0 / 9.0, False), (np.pi, False)])
+def test_runs_share_a_ripple_where_one_phase_explains_seven_tenths_of_what_their_own_do(monkeypatch, apart, one):
+    """Of two runs that is the square of the cosine of half of what lies between them: 0.75, and 0.41."""
+    assert (shared(monkeypatch, 0.0, apart) is not None) is one
+
+
+def test_a_phase_is_one_only_where_every_run_logged_its_angle(monkeypatch):
+    assert shared(monkeypatch, 0.0, 0.0, present=()) is None
+
+
+@pytest.mark.parametrize("inertia", [False, True])
+def test_a_shared_wave_is_looked_for_in_the_unsmoothed_gap_about_its_mean(monkeypatch, inertia):
+    """Of moving samples; what the inertia takes beyond the prediction's smoothed acceleration is no ripple."""
+    moving = np.arange(6) > 1
+    own = SimpleNamespace(
+        torque=np.array([9.0, 9.0, 5.0, 7.0, 6.0, 10.0]), inertia=2.0, acceleration=np.array([9.0, 9, 1, 2, 3, 4]),
+        moving=moving, static=np.arange(6.0), of=lambda values: values,
+    )  # fmt: skip
+    monkeypatch.setattr(ripple_waves, "AsLogged", lambda *_: own)
+    prepared = SimpleNamespace(
+        predicted=np.array([0.0, 0, 1, 1, 2, 2]), acceleration=np.ones(6), angle=10.0 * np.arange(6)
+    )
+    angle, gap, static = ripple_waves._unsmoothed(None, prepared, None, inertia)
+    wanted = np.array([4.0, 6.0, 4.0, 8.0]) - (2.0 * np.array([0.0, 1.0, 2.0, 3.0]) if inertia else 0.0)
+    assert gap == pytest.approx(wanted - wanted.mean())
+    assert (angle.tolist(), static.tolist()) == ([20.0, 30.0, 40.0, 50.0], [2.0, 3.0, 4.0, 5.0])

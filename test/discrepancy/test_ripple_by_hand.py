@@ -247,10 +247,11 @@ def test_a_shared_wave_is_looked_for_in_the_unsmoothed_gap_about_its_mean(monkey
         moving=moving, static=np.arange(6.0), of=lambda values: values,
     )  # fmt: skip
     monkeypatch.setattr(ripple_waves, "AsLogged", lambda *_: own)
+    smoothed = np.array([0.0, 0.0, 1.5, 1.5, 3.5, 3.5])
     prepared = SimpleNamespace(
-        predicted=np.array([0.0, 0, 1, 1, 2, 2]), acceleration=np.ones(6), angle=10.0 * np.arange(6)
+        predicted=np.array([0.0, 0, 1, 1, 2, 2]), acceleration=smoothed, angle=10.0 * np.arange(6)
     )
     angle, gap, static = ripple_waves._unsmoothed(None, prepared, None, inertia)
-    wanted = np.array([4.0, 6.0, 4.0, 8.0]) - (2.0 * np.array([0.0, 1.0, 2.0, 3.0]) if inertia else 0.0)
+    wanted = np.array([4.0, 6.0, 4.0, 8.0]) - (2.0 * np.array([-0.5, 0.5, -0.5, 0.5]) if inertia else 0.0)
     assert gap == pytest.approx(wanted - wanted.mean())
     assert (angle.tolist(), static.tolist()) == ([20.0, 30.0, 40.0, 50.0], [2.0, 3.0, 4.0, 5.0])

@@ -278,7 +278,7 @@ def test_a_cause_takes_no_part_of_a_swing_whatever_its_unit(size):
 
 # -- runs that ring
 def rings(length=50.0, mass=5e4, ratio=0.05, stiffness=4e8, least=0.1, variance=10.0):
-    """A run whose load rings on a rope of this length, m, and stiffness times length, N; and how much of it there is."""
+    """A run whose load rings on a rope of this length, m, and stiffness times length, N; and its variance."""
     left = np.where(np.array(DAMPING_RATIOS) < 0.2, least, 4.0 * least)
     return (np.sqrt(stiffness / length / mass), ratio, mass), left, length, variance
 

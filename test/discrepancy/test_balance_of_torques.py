@@ -225,13 +225,13 @@ def test_a_simulation_stands_for_the_log_and_the_crane_as_the_model_corrected_th
 
 
 # -- what hangs
-def moved(**columns):
+def moved(wire_mass=0.0, **columns):
     size = len(next(iter(columns.values())))
     grid = SimpleNamespace(time=0.1 * np.arange(size), dt=0.1, columns=columns)
     motion = SimpleNamespace(
         acceleration=np.full(size, 20.0), angle=-100.0 / 0.008 * np.linspace(0.0, 1.0, size), window=5
     )
-    crane = SimpleNamespace(gear_ratio=100.0, drum=SimpleNamespace(radius=lambda _: 0.8), wire_mass=0.0)
+    crane = SimpleNamespace(gear_ratio=100.0, drum=SimpleNamespace(radius=lambda _: 0.8), wire_mass=wire_mass)
     return load_of(grid, motion, crane, float("nan"))
 
 
@@ -261,6 +261,16 @@ def test_a_constant_mass_has_the_weight_of_the_wire_that_the_motors_turn_pays_ou
     inside = slice(30, -30)
     wanted = mass if followed else np.full(400, np.median(mass))
     assert found.mass[inside] == pytest.approx(wanted[inside], abs=200.0)
+
+
+@pytest.mark.parametrize(("weight", "followed"), [(25.0, True), (29.0, True), (31.0, False)])
+def test_a_wire_weighs_half_more_than_the_crane_file_says_at_most(weight, followed):
+    """20 kg/m there; most of the time little is paid out, and the mass is right at every length."""
+    length = 100.0 * np.linspace(0.0, 1.0, 400) ** 4
+    mass = 1e6 + weight * length
+    found = moved(20.0, hook_load=mass + 50.0 * np.random.default_rng(0).standard_normal(400), wire_out=length)
+    wanted = mass if followed else np.full(400, np.median(mass))
+    assert found.mass[30:-30] == pytest.approx(wanted[30:-30], abs=30.0)
 
 
 def test_a_load_that_changes_is_followed():

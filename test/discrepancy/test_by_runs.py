@@ -296,7 +296,7 @@ def test_a_law_of_the_data_stands_where_it_leaves_half_of_what_names_do(monkeypa
     monkeypatch.setattr(again, "search_runs", searched)
     monkeypatch.setattr(again, "standing", lambda study, search: asked.append(search) or other)
     monkeypatch.setattr(
-        again, "adds", lambda fewer, more, rng: adds and (fewer, more) == (before.holdout, other.holdout)
+        again, "adds", lambda fewer, more, rng: adds and fewer is before.holdout and more is other.holdout
     )
     assert (again.by_surfaces(STUDY, before) is other) is taken
     assert (asked[0].func, asked[0].keywords) == (again.free_members, {"rows": again.SURFACES})

@@ -373,3 +373,81 @@ def test_a_block_that_turns_both_ways_is_of_neither_direction():
         assert not down[way > 0.0].any()
         assert up[way > 0.0].any(axis=1).all()
         assert down[way < 0.0].any(axis=1).all()
+
+
+# -- by figures of their own, once more
+def test_an_interval_is_one_of_95_per_cent_as_theory_has_it():
+    """The root mean square of n independent normal values varies by 1 / sqrt(2 n) of itself; of few runs each stays."""
+    count = 900
+    values = np.random.default_rng(3).standard_normal(count)
+    size = rms_with_interval(values, np.arange(count), np.arange(count) // 300, np.random.default_rng(0))
+    spread = 1.96 / np.sqrt(2.0 * count) * size.value
+    assert size.interval == pytest.approx((size.value - spread, size.value + spread), abs=0.15 * spread)
+    assert size.value == pytest.approx(np.sqrt(np.mean(values**2)), rel=1e-12)
+
+
+def test_of_unlike_segments_a_size_is_that_of_all_and_not_of_the_middle_draw():
+    """One of four segments keeps ten times as much: it is drawn once or not at all more often than not."""
+    values, segment = np.array([1.0, 1.0, 1.0, 10.0]), np.arange(4)
+    size = rms_with_interval(values, segment, np.zeros(4, int), np.random.default_rng(0))
+    assert size.value == pytest.approx(np.sqrt(103.0 / 4.0))
+    assert size.interval == pytest.approx((1.0, np.sqrt((3 * 100.0 + 1.0) / 4.0)), rel=0.02)
+
+
+@pytest.mark.parametrize(("runs", "redrawn"), [(7, False), (8, True), (9, True)])
+def test_from_eight_runs_on_whole_runs_are_redrawn(runs, redrawn):
+    """All segments of a run alike: with every run in place there is nothing to redraw."""
+    run = np.repeat(np.arange(runs), 5)
+    size = rms_with_interval(1.0 + run, np.arange(len(run)), run, np.random.default_rng(0))
+    assert (size.interval[0] < 0.99 * size.value < size.value < 0.99 * size.interval[1]) is redrawn
+
+
+def test_redrawn_runs_keep_all_of_their_segments_and_no_others():
+    """Weights of a run's segments sum to its number times how often it is drawn, of all runs to the number of runs."""
+    of_run = np.array([0] * 3 + [1] * 5 + [2] * 2 + [3, 4, 5, 6, 7])
+    weights = chance._redrawn(of_run, np.random.default_rng(0))
+    sizes = np.bincount(of_run)
+    times = np.array([weights[:, of_run == k].sum(axis=1) / sizes[k] for k in range(8)])
+    assert weights.shape == (LIMITS.bootstrap_draws, len(of_run))
+    np.testing.assert_allclose(times, np.round(times))
+    np.testing.assert_allclose(times.sum(axis=0), 8.0)
+    np.testing.assert_allclose(times.mean(axis=1), 1.0, atol=0.12)
+    assert len({tuple(each) for each in times.T}) > 100
+
+
+@pytest.mark.parametrize("k", [0, 1])
+def test_a_rival_stands_in_the_place_of_one_effect_beside_all_others(k):
+    third = Slot("third", "", (7,))
+    two = (A, third) if k == 0 else (third, A)
+    left = {(third,): 60.0, two: 10.0, (third, A): 10.0, (third, B): 11.0}
+    cross = crossed(left, (A, third, B))
+    found, _ = rivals_of(cross, cross.explain(two), cross.explain((third,)), k, np.random.default_rng(0))
+    assert found == (B,)
+
+
+@pytest.mark.parametrize(("behind", "alike"), [(0.085, True), (0.095, False), (-0.085, True), (-0.095, False)])
+def test_the_same_column_differs_by_less_than_a_thousandth_of_what_is_saved(monkeypatch, behind, alike):
+    """Of 90, which are saved of 100."""
+    monkeypatch.setattr(chance, "heads", lambda cross, before, trials: list(trials))
+    cross = crossed({(): 100.0, (A,): 10.0, (B,): 10.0 + behind}, (A, B))
+    found, _ = rivals_of(cross, cross.explain((A,)), cross.explain(()), 0, np.random.default_rng(0), same=True)
+    assert (found == (B,)) is alike
+
+
+def test_an_effect_wins_against_the_best_of_the_others_whichever_that_is_and_a_tie_is_won():
+    worse, better = np.full(9, 2.0), np.full(9, 0.5)
+    own = np.full(9, 1.0)
+    for others, share in (([worse, better], 0.0), ([better, worse], 0.0), ([worse, worse], 1.0), ([own, worse], 1.0)):
+        assert _frequency(own, others, np.random.default_rng(0)) == share
+    assert _frequency(own, [], np.random.default_rng(0)) == 1.0
+
+
+def test_hats_stand_at_even_quantiles_from_the_least_to_the_largest_value():
+    """Of one direction they sum to one, and each is one at its own quantile."""
+    values = np.linspace(0.0, 1.0, RUNS * BLOCKS) ** 2
+    line, hats = _designs(values, np.ones(RUNS * BLOCKS))
+    up = hats[:, : LIMITS.knots]
+    assert (line.shape[1], hats.shape[1]) == (4, 2 * LIMITS.knots)
+    np.testing.assert_allclose(up.sum(axis=1), 1.0)
+    peaks = values[np.argmax(up, axis=0)]
+    np.testing.assert_allclose(peaks, np.quantile(values, np.arange(LIMITS.knots) / (LIMITS.knots - 1)), atol=5e-3)

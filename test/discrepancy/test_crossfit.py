@@ -20,6 +20,7 @@ from winch_friction.discrepancy.engine.crossfit import (
     heads,
     on_their_own,
     other_start,
+    reshaped,
 )
 from winch_friction.discrepancy.engine.problem import Base, Layout, Problem
 from winch_friction.discrepancy.thresholds import LIMITS
@@ -390,3 +391,59 @@ def test_chances_of_a_family_are_those_of_its_largest_t():
     assert found == pytest.approx(expected, abs=4.0 * np.sqrt(0.25 / LIMITS.flips))
     assert flip_p_values(100.0 * gains, np.random.default_rng(0)).tolist() == found.tolist()
     assert flip_p_values(np.zeros((1, 5)), np.random.default_rng(0)).tolist() == [1.0]
+
+
+# -- sizes and bounds by figures
+TWO, PLAIN_ONE = Slot("two", "", (3, 4), most=6.0), Slot("plain", "", (2,), most=6.0, plain=True)
+
+
+def sized(*beta):
+    """A base of one column, and beside it the plain effect of column 2 and the two amounts of columns 3 and 4."""
+    layout = SimpleNamespace(upper=np.array([2.0, 9.0, 50.0, 1e9, 1e9]), scales=np.array([1.0, 1.0, 10.0, 100.0, 1e3]))
+    problem = SimpleNamespace(columns=lambda slots: (0, *(c for each in slots for c in each.columns)), layout=layout)
+    return SimpleNamespace(problem=problem), SimpleNamespace(slots=(PLAIN_ONE, TWO), beta=np.array([2.0, *beta]))
+
+
+@pytest.mark.parametrize(
+    ("beta", "plain", "two"),
+    [
+        ((7.0, 5.9, -5.9), False, False),  # what a bare model lacks is as large as its layout allows
+        ((49.0, 6.0, 0.1), False, True),  # one of its amounts is enough
+        ((49.0, 0.1, 6.0), False, True),
+        ((50.0, 0.1, -6.0), True, True),  # whichever sign it has
+        ((-50.0, -6.0, 0.0), True, True),
+        ((0.0, 5.998, 0.0), False, True),  # so near to it the fit was stopped there
+    ],
+)
+def test_an_effect_is_at_its_bound_where_one_of_its_amounts_is(beta, plain, two):
+    cross, found = sized(*beta)
+    assert (CrossFit.at_bound(cross, found, PLAIN_ONE), CrossFit.at_bound(cross, found, TWO)) == (plain, two)
+
+
+def test_the_size_of_an_effect_is_that_of_its_first_amount_in_its_own_unit():
+    cross, found = sized(7.0, 3.0, 4.0)
+    assert (CrossFit.size(cross, found, PLAIN_ONE), CrossFit.size(cross, found, TWO)) == (70.0, 300.0)
+
+
+def test_what_is_left_inside_is_the_square_above_the_noise_and_what_matters_to_nobody():
+    unresolved = np.array([0.0, 2.0, 5.0, 0.5])
+    cross = SimpleNamespace(
+        problem=SimpleNamespace(unresolved=unresolved), remainder=lambda _: np.array([2.0, -2.0, 3.0, 1.0])
+    )
+    assert CrossFit.inside_excess(cross, None) == pytest.approx((3.0 + 1.0 + 3.0 - 0.5) / 4.0)
+    assert CrossFit.inside_excess(cross, None, np.array([True, False, True, False])) == pytest.approx(3.0)
+
+
+def test_a_law_is_shaped_anew_within_what_it_speaks_of_beside_the_others_as_they_are_then():
+    """Another group's feedback has laws of its own, however well they fit."""
+    first, second = (Slot("zero", f"shape {k}", (k,), law="bent", part="1") for k in (1, 2))
+    strange = [Slot("zero", "", (3,), law="bent", part="2"), Slot("zero", "", (4,), part="1"), Slot("gain", "", (5,))]
+    other, wider = Slot("wave", "narrow", (6,)), Slot("wave", "wide", (7,))
+    losses = {first: 5.0, second: 4.0, other: 2.0, wider: 1.0, **dict.fromkeys(strange, 0.1)}
+    cross = SimpleNamespace(
+        problem=SimpleNamespace(slots=(first, second, *strange, other, wider)),
+        # wide pays off beside the second shape alone
+        train_loss=lambda slots: (sum(losses[s] + 3.0 * (s is wider and second not in slots) for s in slots), None),
+    )
+    assert reshaped(cross, (first, other)) == (second, wider)
+    assert reshaped(cross, (other, first)) == (other, second)

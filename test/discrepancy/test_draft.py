@@ -54,14 +54,29 @@ def test_what_is_cut_at_a_bound_says_what_it_would_have_been():
     assert (again.value, again.source) == (0.5 * upper, "runs")
 
 
-def test_what_a_bare_model_lacks_has_room_to_move_beyond_its_usual_bound():
+@pytest.mark.parametrize(("size", "room"), [(2.0, 20.0), (0.01, 1.0), (-2.0, 20.0)])
+def test_what_a_bare_model_lacks_has_room_to_move_beyond_its_usual_bound(size, room):
+    """Ten times as far as it is off, and no less than usual; in upper bounds of a usual one."""
     own = drafted()
-    own.at[C2.name] = 2.0 * C2.upper
+    own.at[C2.name] = size * C2.upper
     candidate = SimpleNamespace(term=COULOMB, merge=None, most_in=lambda _: LIMITS.unbounded)
     own.terms.clear()
     slot = SimpleNamespace(origin=(candidate, None))
-    repair._add(own, slot, {C2.name: ParameterEstimate(2.0 * C2.upper, 1.0, "N*m")}, None, model(), np.ones(1))
-    assert own.room[C2.name] == (C2.lower, LIMITS.bare_room * 2.0 * C2.upper)
+    estimate = {C2.name: ParameterEstimate(size * C2.upper, 1.0, "N*m")}
+    repair._add(own, slot, estimate, None, model(), np.ones(1))
+    assert LIMITS.bare_room == 10.0
+    assert own.room[C2.name] == pytest.approx((C2.lower, room * C2.upper))
+
+
+@pytest.mark.parametrize(("typical", "room"), [(1.0, False), (-1.0, False), (100.0, True), (-100.0, True)])
+def test_only_what_is_believed_beyond_the_usual_bound_has_room_of_its_own(typical, room):
+    """A typical size may be negative, of a curve that falls; six of them are believed, and 100 N m are usual."""
+    churning = term_named("churning")
+    own, (amount, exponent) = drafted(), churning.parameters
+    found = {amount.name: ParameterEstimate(2.0, 1.0, "N*m"), exponent.name: ParameterEstimate(1.9, 0.1, "1")}
+    candidate = Candidate("churning", linear=(amount,), term=churning)
+    repair._add(own, SimpleNamespace(origin=(candidate, None)), found, None, model(), np.array([typical]))
+    assert own.room == ({amount.name: (amount.lower, 600.0)} if room else {})
 
 
 @pytest.mark.parametrize(
@@ -422,3 +437,31 @@ def test_polishing_fits_the_training_runs_and_reports_what_it_found(monkeypatch)
     found = repair.polished(Repair(model(), {}, cut=("c",)), model(), ["runs"], ("a", "b"), "crane", "known")
     assert asked == [(["runs"], "crane", model(), ("a", "b"), "known"), ("a", "b")]
     assert (found.model.name, found.parameters, found.cut) == ("as found", {"as found": {}}, ("c",))
+
+
+@pytest.mark.parametrize("has", [False, True])
+def test_a_ripple_that_the_model_has_is_not_added_to_it_once_more(monkeypatch, has):
+    ripple = term_named("torque_ripple")
+    wave = {p.name: ParameterEstimate(p.typical, 1e-3, p.unit) for p in ripple.parameters}
+    monkeypatch.setattr(repair, "_common_wave", lambda *_: wave)
+    if has:
+        values = (50.0, *(p.typical for p in ripple.parameters))
+        whole = replace(SEED, terms=(COULOMB, ripple), values=values, covariance=np.eye(4), corrections=())
+        base = SimpleNamespace(names=whole.parameter_names, parameters=4)
+        problem = SimpleNamespace(
+            columns=lambda _: (0, 1, 2, 3), layout=SimpleNamespace(scales=np.ones(4)), base=base
+        )  # fmt: skip
+        cross = SimpleNamespace(problem=problem, covariance=lambda _: np.eye(4))
+        given = SimpleNamespace(model=whole, crane=SimpleNamespace(name="own"), prepared=(), runs=())
+        search = SimpleNamespace(
+            given=given, cross=cross, expansion=SimpleNamespace(model=whole), train=(), reversal=None, ripple="line",
+            flow=(),
+        )  # fmt: skip
+        monkeypatch.setattr(repair, "_sides", lambda _: "sides")
+        found = repair.draft(search, SimpleNamespace(slots=(), beta=np.zeros(4)), {}).model
+        assert found.values == values
+    else:
+        candidate = Candidate("viscous", linear=(VISCOSITY,), term=VISCOUS)
+        found = drafting(monkeypatch, candidate, ripple="line").model
+        assert {name: found.as_dict()[name] for name in wave} == {name: each.value for name, each in wave.items()}
+    assert "torque_ripple" in found.term_names

@@ -9,7 +9,8 @@ import pytest
 from winch_friction.discrepancy.detectors import flow_balance, lost_flow, ripple, ripple_waves
 from winch_friction.discrepancy.detectors.lost_flow import FreeAir, Leakage, leakage_of
 from winch_friction.discrepancy.detectors.ripple import Ripple
-from winch_friction.physics.fluid import LEAKAGE_LAWS, REFERENCE_PRESSURE
+from winch_friction.physics.fluid import LEAKAGE_LAWS, REFERENCE_PRESSURE, air_compressed
+from winch_friction.physics.signals import Run
 
 RUNS, ROWS = 5, 12
 FULL = 3e-5  # m^3/rad
@@ -221,3 +222,168 @@ def test_an_amplitude_is_weighted_by_how_sure_each_run_is_and_rid_of_its_noises_
 def test_a_runs_speeds_are_parted_in_thirds_whichever_way_it_turns():
     slow, middle, fast = ripple._speed_classes(np.array([5.0, -1.0, 3.0, -6.0, 2.0, -4.0]))
     assert [sorted(own.tolist()) for own in (slow, middle, fast)] == [[1, 4], [2, 5], [0, 3]]
+
+
+# -- what is told of both
+@pytest.mark.parametrize(
+    ("leaks", "air", "told"),
+    [
+        (True, True, ["leak", "air"]),
+        (True, False, ["leak"]),
+        (False, True, ["air"]),
+        (False, False, []),
+        (None, None, []),
+    ],
+)
+def test_only_a_leak_and_air_that_are_found_are_told(monkeypatch, leaks, air, told):
+    leak = None if leaks is None else SimpleNamespace(found=leaks, name="leak")
+    gas = None if air is None else SimpleNamespace(name="air")
+    monkeypatch.setattr(flow_balance, "lost_speed", lambda *_: leak)
+    monkeypatch.setattr(flow_balance, "free_air", lambda *_: gas)
+    monkeypatch.setattr(flow_balance, "is_air", lambda _: air)
+    found, unseen = flow_balance.shown_by([], [], ())
+    assert ([each.name for each in found], unseen) == (told, [])
+
+
+@pytest.mark.parametrize(
+    ("gains", "holds"),
+    [(np.ones(20), True), (-np.ones(20), False), (np.tile([3.0, -2.9], 10), False), (np.zeros(0), False)],
+)
+def test_air_holds_on_other_runs_where_it_surely_takes_something_off_their_lost_speed(monkeypatch, gains, holds):
+    monkeypatch.setattr(flow_balance, "_all_sums", lambda *_: np.zeros((len(gains), 5)))
+    monkeypatch.setattr(flow_balance, "_gains", lambda sums, volume: gains)
+    assert flow_balance.holds_on(FreeAir(0.01, 0.001, 0.0, 1.0, 0.5), [], []) is holds
+
+
+def test_air_that_seems_sure_by_its_signs_and_takes_nothing_off_does_not_hold(monkeypatch):
+    monkeypatch.setattr(flow_balance, "_all_sums", lambda *_: np.zeros((4, 5)))
+    monkeypatch.setattr(flow_balance, "_gains", lambda *_: -np.ones(4))
+    monkeypatch.setattr(flow_balance, "sign_flip_p_value", lambda _: 0.0)
+    assert not flow_balance.holds_on(FreeAir(0.01, 0.001, 0.0, 1.0, 0.5), [], [])
+
+
+@pytest.mark.parametrize(("steady", "slow", "change"), [(20, 40, 1.0), (19, 40, 30.0), (19, 19, None)])
+def test_plateaus_speak_for_a_leak_and_only_where_they_are_few_whatever_follows_its_command(
+    monkeypatch, steady, slow, change
+):
+    """Twenty stretches of three runs are enough."""
+    counts = {1.0: steady, 30.0: slow}
+    rows = lambda runs, prepared, change: np.arange(counts[change])[:, None] % 3
+    monkeypatch.setattr(flow_balance, "_tables", rows)
+    monkeypatch.setattr(flow_balance, "_full_displacement", lambda _: 3e-5)
+    monkeypatch.setattr(flow_balance, "leakage_of", lambda table, change, full: (len(table), change, full))
+    found = flow_balance.lost_speed([], [])
+    assert found == (None if change is None else (counts[change], change, 3e-5))
+    monkeypatch.setattr(flow_balance, "_tables", lambda *_: np.arange(40)[:, None] % 2)
+    assert flow_balance.lost_speed([], []) is None
+
+
+@pytest.mark.parametrize(
+    ("start", "share", "rows"), [(0.0, 1.0, 3), (7.0, 1.0, 3), (0.0, 0.0, 0), (0.0, 0.4, 0), (0.0, 0.6, 3)]
+)
+def test_a_stretch_is_told_by_its_command_at_the_same_instants_where_most_of_it_is_used(start, share, rows):
+    """Fifteen seconds at about 50 rad/s are three stretches of five; the run's clock begins anywhere."""
+    time = 0.05 * np.arange(300)
+    group = SimpleNamespace(balances=True, pressure=np.full(300, 150e5), displacement=np.full(300, 3e-5))
+    prepared = SimpleNamespace(
+        time=time, start=start, dt=0.05, used=np.mod(time, 5.0) >= 5.0 * (1.0 - share) - 1e-9,
+        speed=48.0 + 0.1 * time, acceleration=np.full(300, 0.1), groups=[group], channels={},
+    )  # fmt: skip
+    long = 0.05 * np.arange(-200, 700) + start
+    run = Run("r", {"time": long, "speed_reference": 50.0 + 0.1 * (long - start)})
+    found = flow_balance._segments(run, prepared, 4, 1.0)
+    assert len(found) == rows
+    if rows:
+        assert found[:, 0].tolist() == [4.0] * 3
+        assert found[:, 1] == pytest.approx(2.0)  # commanded beyond what was reached
+        assert found[:, 3] == pytest.approx(0.1)
+
+
+def test_air_is_judged_on_each_run_by_the_volume_of_the_others(monkeypatch):
+    """Three runs of eight segments, of 1, 2 and 3 litres: the others' means are 2.5, 2 and 1.5."""
+    sums = np.array([(k, 4e-3 * (k + 1), 4.0, 9e-6 * (k + 1) ** 2, 10.0) for k in range(3) for _ in range(8)])
+    monkeypatch.setattr(flow_balance, "_all_sums", lambda *_: sums)
+    found = flow_balance.free_air([], [])
+    assert found.volume == pytest.approx(2e-3)
+    own, others = np.array([1e-3, 2e-3, 3e-3]), np.array([2.5e-3, 2e-3, 1.5e-3])
+    left = 9e-6 * np.array([1.0, 4.0, 9.0]) - 2.0 * others * 4.0 * own + 4.0 * others**2
+    assert found.before == pytest.approx(np.sqrt(8 * 9e-6 * 14.0 / 240.0))
+    assert found.after == pytest.approx(np.sqrt(8 * left.sum() / 240.0))
+    monkeypatch.setattr(flow_balance, "_all_sums", lambda *_: sums[:19])
+    assert flow_balance.free_air([], []) is None  # of too few stretches
+    monkeypatch.setattr(flow_balance, "_all_sums", lambda *_: np.repeat(sums[:16], 2, axis=0))
+    assert flow_balance.free_air([], []) is None  # of two runs
+
+
+@pytest.mark.parametrize(("swings", "looked_at"), [(0.04, True), (0.06, False)])
+def test_air_is_looked_for_where_the_driving_motors_hardly_swivel_in_segments_without_their_ends(
+    monkeypatch, swings, looked_at
+):
+    """34 seconds less three at either end are five segments of five; what air takes is swept by all of the motors."""
+    time = 0.01 * np.arange(3401)
+    asked = {}
+
+    def regressors(wanted, reached, drop, air, oil, side, dt):
+        asked.update(air=air, oil=oil, side=side, drop=drop)
+        return np.ones((len(wanted), 1)), np.sin(np.arange(len(wanted))), np.cos(np.arange(len(wanted)) + 0.5)
+
+    monkeypatch.setattr(flow_balance, "_regressors", regressors)
+    lower = np.where(np.arange(3401) < 1500, 5e6, 2e7)
+    columns = {"speed_reference": 50.0 + 0.0 * time, "motor_speed": 49.0 + 0.0 * time}
+    columns |= {"main.pressure_a": 1e7 + 0.0 * time, "main.pressure_b": lower}
+    columns |= {"main.displacement": 3e-5 * (1.0 + swings * np.sqrt(2.0) * np.sin(7.0 * time))}
+    run = Run("r", {"time": time, **columns})
+    prepared = SimpleNamespace(groups=[SimpleNamespace(name="main", count=4, balances=True)])
+    rows = flow_balance._sums(run, prepared, 6, slice(0, 3401))
+    assert len(rows) == 5 * looked_at
+    if not looked_at:
+        return
+    swept = 4 * np.median(columns["main.displacement"])
+    taken = air_compressed(columns["main.pressure_a"], lower) / swept
+    assert asked["air"][[0, -1]] == pytest.approx(taken[[0, -1]])
+    assert (asked["side"][0], asked["side"][-1], asked["drop"][0]) == (1.0, -1.0, 5e6)
+    assert rows[:, 0].tolist() == [6.0] * 5
+    assert rows[:, 4].tolist() == [500.0] * 5
+    assert rows[:, 2] == pytest.approx(250.0, rel=0.02)
+    assert rows[:, 3] == pytest.approx(250.0, rel=0.02)
+    assert rows[:, 1] == pytest.approx(-250.0 * np.sin(0.5), rel=0.05)
+
+
+def test_the_lost_speed_is_what_was_wanted_and_not_reached(monkeypatch):
+    wanted, reached = np.linspace(0.0, 50.0, 400), np.linspace(0.0, 40.0, 400)
+    drop, air, oil = np.full(400, 1e7), np.linspace(0.0, 3.0, 400), np.linspace(0.0, 1.0, 400)
+    _, lost, taken = flow_balance._regressors(wanted, reached, drop, air, oil, np.ones(400), 0.02)
+    inside = slice(50, -50)
+    assert lost[inside] == pytest.approx((wanted - reached)[inside], rel=1e-6)
+    assert taken[inside] == pytest.approx(3.0 / 399 / 0.02, rel=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("beside", "alone", "leak", "holds"),
+    [
+        (0.0, 0.0, 1.0, True),
+        (0.0, 0.0, 0.0, False),  # which takes nothing off
+        (0.0, 1.0, 1.0, False),  # an error of the scale alone does as much: nothing is left to a leak
+        (1.5, 0.0, 1.0, False),  # with an error of the scale beside it that takes more than there is
+    ],
+)
+def test_a_leak_is_held_against_the_error_of_the_scale_alone(beside, alone, leak, holds):
+    """Rows of which each loses 2 rad/s at 2 rad/s, and as much per unit of a leak."""
+    rows = np.zeros((30, 4 + len(LEAKAGE_LAWS)))
+    rows[:, 0], rows[:, 1], rows[:, 2], rows[:, 4] = np.arange(30) % 3, 2.0, 2.0, 2.0
+    law = next(iter(LEAKAGE_LAWS))
+    own = Leakage({law: (leak, 0.1)}, 9.0, 0.1, 0.0, 1.0, 0.1, beside=(beside,), alone=(alone,))
+    assert bool(own.explains(rows)) is holds
+
+
+def test_what_two_laws_cost_together_is_as_sure_as_they_are_together():
+    """Laws that stand in for each other are each known badly and their sum well; before is foretold by other runs."""
+    drawn = table({"slip_leakage": 2e-11, "isoviscous_leakage": 2e-11}, 0.02, noise=0.02)
+    found = leakage_of(drawn, lost_flow.STEADY_COMMAND, FULL)
+    assert len(found.leakage) == 2
+    apart = np.hypot(*(std for _, std in found.leakage.values())) * REFERENCE_PRESSURE / FULL
+    assert 0.0 < found.slip_std < 0.8 * apart
+    lost, speed, run = drawn[:, 1], drawn[:, 2], drawn[:, 0]
+    held = np.concatenate([lost[run == k] - speed[run == k] * (speed[run != k] @ lost[run != k]) /
+                           (speed[run != k] @ speed[run != k]) for k in range(RUNS)])  # fmt: skip
+    assert found.before == pytest.approx(np.sqrt(np.mean(held**2)))

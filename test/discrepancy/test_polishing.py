@@ -26,10 +26,15 @@ def test_a_delay_is_all_of_what_the_signals_are_out_of_step_by():
     assert found[0].value == pytest.approx(0.050, abs=5e-4)
 
 
-@pytest.mark.parametrize(("corrections", "held"), [
-    ((), False), (("pressure_offset",), False), (("signal_delay",), True), (("pressure_filter",), True),
+ALWAYS, A_TIME = (), ((0.0, 60.0),)
+
+
+@pytest.mark.parametrize(("corrections", "during", "held"), [
+    ((), ALWAYS, False), (("pressure_offset",), ALWAYS, False), (("signal_delay",), ALWAYS, True),
+    (("pressure_filter",), ALWAYS, True), (("signal_delay",), A_TIME, False), (("pressure_offset",), A_TIME, False),
 ])  # fmt: skip
-def test_beside_what_makes_a_signal_late_the_tolerance_of_times_is_held(monkeypatch, corrections, held):
+def test_beside_what_makes_a_signal_late_the_tolerance_of_times_is_held(monkeypatch, corrections, during, held):
+    """What is late for a time alone says nothing of the runs beyond it."""
     asked = []
 
     class Asked(Exception):
@@ -41,7 +46,7 @@ def test_beside_what_makes_a_signal_late_the_tolerance_of_times_is_held(monkeypa
 
     monkeypatch.setattr(repair, "base_of", base_of)
     seed = FrictionModel("m", (term_named("coulomb"),), (50.0,), covariance=np.eye(1))
-    model = replace(seed, corrections=tuple(Correction(name, 0.03) for name in corrections))
+    model = replace(seed, corrections=tuple(Correction(name, 0.03, during=during) for name in corrections))
     with pytest.raises(Asked):
         repair._step(SimpleNamespace(model=model), seed, {})
     assert asked == [("timing",) if held else ()]

@@ -156,3 +156,36 @@ def test_the_direction_of_a_block_is_where_most_of_it_goes():
     way = np.where(np.arange(60) % 20 < 15, 1.0, -1.0) * np.where(np.arange(60) < 20, 1.0, -1.0)
     found = run_blocks(time, time, (time[:, None],), np.ones(60, bool), way, {}, 20, 1.0)
     np.testing.assert_array_equal(found.direction, [1.0, -1.0, -1.0])
+
+
+# -- the noise by theory
+@pytest.mark.parametrize("size", [1.0, 40.0])
+def test_the_noise_of_a_long_record_is_its_deviation_whatever_slow_motion_it_has(size):
+    """Twelve blocks less a parabola leave nine degrees of freedom, of which the quieter quarter tells."""
+    count = 30_000
+    slow = 1e3 * np.sin(np.arange(count) / 200.0)
+    values = size * np.random.default_rng(5).standard_normal(count) + slow
+    assert noise_of_run(values, np.arange(count)) == pytest.approx(size, rel=0.015)
+
+
+@pytest.mark.parametrize("blocks", [2, 11, 240])
+def test_a_record_as_good_as_noise_free_has_a_hundredth_of_what_no_balance_closes(blocks):
+    for least in (0.1, 7.0):
+        assert noise_of_run(np.zeros(blocks), np.arange(blocks), least) == pytest.approx(0.01 * least)
+
+
+def test_where_most_of_a_record_rings_the_quieter_quarter_tells_its_noise():
+    """Seven tenths of it ring by thirty times the noise."""
+    count = 6000
+    noise = np.random.default_rng(6).standard_normal(count)
+    rings = np.where(np.arange(count) < 0.7 * count, 30.0 * (-1.0) ** np.arange(count), 0.0)
+    assert noise_of_run(noise + rings, np.arange(count)) == pytest.approx(1.4, abs=0.5)
+
+
+def test_each_run_is_as_noisy_as_its_own_balance_closes_at_least():
+    """Runs without any noise, before and after what is known of them."""
+    least = np.linspace(0.1, 0.6, RUNS)
+    for known in ((), (EFFECT,)):
+        found = problem_of(tables(0.0, noise=0.0), layout(), least, known)
+        assert [found.noise[k] for k in range(RUNS)] == pytest.approx(list(0.01 * least))
+        assert found.least_noise is least

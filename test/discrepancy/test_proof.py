@@ -188,14 +188,15 @@ HOURS, EVEN = np.arange(8.0), np.array([1, -1, -1, 1, 1, -1, -1, 1])
 
 
 def drifting(slope, temperature=(), hours=HOURS, names=()):
-    """Hours of runs whose loss along the motion grows by so much of a drive of 100 from the first to the last."""
+    """Hours of runs whose loss along the motion grows by so much of a drive of 100 from the first to the last; every
+    second run drives with 50 and the others with 150, and the first alone may have a temperature."""
     loss = 100.0 * slope * (hours - hours[0]) / max(np.ptp(hours), 1.0) + 0.01 * EVEN[: len(hours)]
     runs = [
         Driven(
-            start=3600.0 * hour, present=frozenset(temperature), used=np.ones(2, bool), gap=np.zeros(2),
-            predicted=np.full(2, 100.0), unit_torque=1.0,
+            start=3600.0 * hour, present=frozenset(temperature if k == 0 else ()), used=np.ones(2, bool),
+            gap=np.zeros(2), predicted=np.full(2, 50.0 if k % 2 else 150.0), unit_torque=1.0,
         )
-        for hour in hours
+        for k, hour in enumerate(hours)
     ]  # fmt: skip
     direction = np.tile([1.0, -1.0, 0.0, 0.0, 0.0], len(hours))
     blocks = SimpleNamespace(run=np.repeat(np.arange(len(hours)), 5), direction=direction)
@@ -210,7 +211,7 @@ def drifting(slope, temperature=(), hours=HOURS, names=()):
         ({"slope": -0.05}, True),  # it may fall as well
         ({"slope": 0.015}, False),  # less than 2 % of the drive is no one's concern, however sure
         ({"slope": -0.015}, False),
-        ({"slope": 0.025}, True),
+        ({"slope": 0.028}, True),  # of the mean drive, that of five runs of eight or four alike
         ({"temperature": ("oil_temperature",)}, False),
         ({"names": ("wear_drift",)}, False),
         ({"names": ("tare_load",)}, True),
@@ -314,16 +315,25 @@ def test_two_models_are_compared_over_the_runs_that_were_asked(monkeypatch):
         y=np.array([3.0, 0.0, 0.0, 4.0]),
         x=np.array([[1.0, 9.0], [0, 9], [0, 9], [2.0, 9.0]]),
     )
-    monkeypatch.setattr(module, "_blocks", lambda old, new, length: (old.name, new.name, length))
-    monkeypatch.setattr(module, "joined", lambda tables, weights: blocks if len(tables) == 2 == len(weights) else None)
+    tables, asked = [], []
+
+    def noise_of(values, skew, _, k, least):
+        asked.append((values.tolist(), skew.tolist()))
+        return noise[k] * (least == k + 1)
+
+    monkeypatch.setattr(module, "_blocks", lambda old, new, length: (old.name + old.of, new.name + new.of, length))
+    monkeypatch.setattr(module, "joined", lambda own, weights: tables.extend(own) or (blocks if weights else None))
     monkeypatch.setattr(module, "segment_length", lambda total: total)
     monkeypatch.setattr(module, "least_noise_of", lambda old: least[old.name])
-    monkeypatch.setattr(module, "_noise", lambda values, skew, blocks, k, least: noise[k] * (least == k + 1))
-    monkeypatch.setattr(module, "drive_of", lambda old: {"a": 10.0, "c": 20.0}[old.name])
+    monkeypatch.setattr(module, "_noise", noise_of)
+    monkeypatch.setattr(module, "drive_of", lambda own: {"a1": 10.0, "c1": 20.0}.get(own.name + own.of, 99.0))
     before, after = (
-        SimpleNamespace(prepared=tuple(SimpleNamespace(name=name, time=np.arange(3.0)) for name in "abc")) for _ in "12"
+        SimpleNamespace(prepared=tuple(SimpleNamespace(name=name, of=of, time=np.arange(3.0)) for name in "abc"))
+        for of in "12"
     )
     found = module.beside(before, after, ("c", "a"))
+    assert tables == [("a1", "a2", 4.0), ("c1", "c2", 4.0)]  # segments go with all of the runs' time
+    assert asked == [([1.0, 0.0, 0.0, 2.0], [9.0] * 4)] * 2  # noise is what the repaired model leaves
     assert [run.name for run in found.runs] == ["a", "c"]
     assert (found.before.tolist(), found.after.tolist()) == ([3.0, 0.0, 0.0, 4.0], [1.0, 0.0, 0.0, 2.0])
     assert found.noise_floor == pytest.approx(np.sqrt((3 * 9.0 + 16.0) / 4.0))
@@ -336,11 +346,11 @@ def test_two_models_are_compared_over_the_runs_that_were_asked(monkeypatch):
 def test_noise_is_what_neither_a_late_signal_nor_its_change_leaves(monkeypatch):
     asked = []
     monkeypatch.setattr(module, "noise_of_run", lambda *each: asked.append(each) or 7.0)
-    blocks = SimpleNamespace(run=np.array([0, 1, 1, 1]), position=np.array([5, 0, 1, 2]))
+    blocks = SimpleNamespace(run=np.array([0, 1, 1, 1]), position=np.array([5, 1, 2, 4]))
     values, skew = np.array([9.0, 1.0, 2.0, 3.0]), np.array([4.0, 0.0, 1.0, 4.0])
     assert module._noise(values, skew, blocks, 1, 0.5) == 7.0
     own, position, least, late = asked[0]
-    assert (own.tolist(), position.tolist(), least) == ([1.0, 2.0, 3.0], [0, 1, 2], 0.5)
+    assert (own.tolist(), position.tolist(), least) == ([1.0, 2.0, 3.0], [1, 2, 4], 0.5)
     assert late.tolist() == [[0.0, 1.0], [1.0, 2.0], [4.0, 3.0]]
     assert module._noise(values, skew, blocks, 0, 0.5) == 7.0
     assert asked[1][3].tolist() == [4.0]
@@ -354,3 +364,71 @@ def test_the_loss_of_a_run_is_the_median_of_what_is_left_along_its_motion():
         runs=runs, blocks=blocks, after=np.array([2.0, -3.0, 90.0, 500.0, 4.0, 1.0]), before=np.full(6, 77.0)
     )
     assert module._losses(own) == [(5.0, 3.0), (9.0, -4.0)]
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "there"),
+    [
+        ([1, 1, 1, 1], [1, 1, 1, 1], [0, 1, 2, 3]),
+        ([1, 0, 1, 1], [1, 1, 1, 1], [0, 2, 3]),
+        ([1, 1, 1, 1], [1, 1, 0, 1], [0, 1, 3]),
+        ([0, 1, 1, 1], [1, 1, 1, 0], [1, 2]),
+    ],
+)
+def test_a_gap_is_compared_where_either_model_leaves_a_sample_in_the_regime(monkeypatch, old, new, there):
+    """The repaired one may prepare a run otherwise: a stroke that is corrected, a delay that is taken out."""
+    monkeypatch.setattr(module, "block_size", lambda _: 1)
+    monkeypatch.setattr(module, "timing_column", lambda run: np.zeros(len(run.time)))
+    first = SimpleNamespace(
+        time=np.arange(4.0), start=5.0, used=np.array(old, bool), gap=np.ones(4), unit_torque=1.0,
+        direction=np.ones(4), channels={},
+    )  # fmt: skip
+    second = SimpleNamespace(
+        time=np.arange(4.0), start=5.0, gap=np.ones(4), unit_torque=1.0,
+        used_at=lambda when: np.array(new, bool)[(when - 5.0).astype(int)],
+    )  # fmt: skip
+    assert module._blocks(first, second, 2.0).position.tolist() == there
+
+
+def left(value, low, high, floor=1.0, excused=1.0):
+    return SimpleNamespace(size_after=Size(value, (low, high)), floor=floor, excused=excused)
+
+
+@pytest.mark.parametrize(
+    ("own", "there", "far"),
+    [
+        (left(1.9, 1.4, 2.5), True, False),  # within its interval
+        (left(1.9, 1.6, 2.5), False, False),
+        (left(2.1, 1.4, 9.0), False, True),  # a wide interval does not excuse what is plainly more
+        (left(1.9, 1.7, 2.5, excused=1.2), True, False),  # zeros within a step are excused
+        (left(2.1, 1.4, 2.5, excused=1.5), False, True),  # but twice the floor is twice that of the noise
+    ],
+)
+def test_what_is_left_is_noise_by_the_lower_end_of_its_interval_and_twice_the_floor_at_most(own, there, far):
+    assert (bool(module.at_the_floor(own)), bool(module.far_off(own))) == (there, far)
+
+
+@pytest.mark.parametrize(("chance", "holds"), [(0.024, True), (0.026, False)])
+def test_a_proof_is_as_sure_as_one_in_forty(monkeypatch, chance, holds):
+    """By the blocks of the refit and of the names, in this order: that the names gain nothing beside the refit."""
+    monkeypatch.setattr(module, "worse_runs", lambda *_: ())
+    fitted, named = side(1.0, before=3.0), side(0.5, before=3.0)
+    for each in (fitted, named):
+        each.size_before, each.excused = Size(3.0, (2.9, 3.1)), each.floor
+    pairs = []
+    monkeypatch.setattr(module, "chance_of_no_gain", lambda a, b, *_: pairs.append((abs(a[0]), abs(b[0]))) or chance)
+    assert (not module.unproven("wave", fitted, named, np.random.default_rng(0))) is holds
+    assert adds(fitted, named, np.random.default_rng(0)) is holds
+    assert pairs == [(1.0, 0.5)] * 2
+
+
+def test_next_to_nothing_beside_a_refit_is_too_little_only_where_the_refit_is_at_its_floor(monkeypatch):
+    """From 0.3 to 0.29 that is 0.08 of a balance that closes to 0.25; the refit's own floor is 0.05, or 0.25."""
+    monkeypatch.setattr(module, "worse_runs", lambda *_: ())
+    monkeypatch.setattr(module, "chance_of_no_gain", lambda *_: 0.0)
+    named = side(0.29, before=3.0, noise_floor=0.06, least_noise=0.25)
+    for least, holds in ((0.04, True), (0.25, False)):
+        fitted = side(0.3, before=3.0, noise_floor=0.03, least_noise=least)
+        for each in (fitted, named):
+            each.size_before, each.excused = Size(3.0, (2.9, 3.1)), each.floor
+        assert (not module.unproven("wave", fitted, named, np.random.default_rng(0))) is holds

@@ -10,6 +10,7 @@ from gap_rig import names_of, runs_with
 from campaign.gap import diagnose
 from campaign.gap_cases import Case
 from campaign.rig import DRAWN
+from winch_friction.discrepancy import ties as module
 from winch_friction.discrepancy.answer import GapOptions
 from winch_friction.discrepancy.candidates.candidate import ParameterEstimate
 from winch_friction.discrepancy.candidates.families import literature
@@ -35,6 +36,7 @@ from winch_friction.discrepancy.ties import (
 )
 from winch_friction.discrepancy.workflow import find_gap
 from winch_friction.physics.friction import term_named
+from winch_friction.physics.friction.symbols import GROUP_SIGNALS, WINCH_SIGNALS
 from winch_friction.physics.signals import Run
 from winch_friction.records.crane_file import load_crane
 from winch_friction.records.model_file import load_model
@@ -263,3 +265,137 @@ def test_of_three_estimates_the_two_that_are_tied_most_are_combined_by_what_spre
     assert known.expression == "c - 3.8 * b"  # 0.95 * 8 / 2
     assert known.value == pytest.approx(70.0 - 3.8 * 60.0)
     assert known.std == pytest.approx(8.0 * np.sqrt(1.0 - 0.95**2))
+
+
+@pytest.mark.parametrize(
+    ("which", "spoken", "column"),
+    [
+        (0.0, (True, True), 3 * 2e-5 * 1e7 + 2 * 4e-5 * 5e6 - (7e6 * 2e-5 - 4e-6 * 1e7) - 9e6 * 4e-5),
+        (1.0, (True, False), 3 * 2e-5 * 1e7 - (7e6 * 2e-5 - 4e-6 * 1e7)),
+        (2.0, (False, True), 2 * 4e-5 * 5e6 - 9e6 * 4e-5),
+    ],
+)
+def test_a_displacement_that_is_read_too_large_is_more_torque_less_the_friction_predicted_by_it(
+    monkeypatch, which, spoken, column
+):
+    """Of a friction of 7 MPa times the stroke and 4 cm^3 times the pressure of the driving motors, and 9 MPa times that
+    of the passive ones. The driving group's pressure is predicted from its torque: at a larger stroke a smaller one."""
+    names = [signal.name for signal in GROUP_SIGNALS]
+
+    def torque(point, states):
+        at = lambda k, name: point[len(WINCH_SIGNALS) + k * len(names) + names.index(name)]
+        return 7e6 * at(0, "displacement") + 4e-6 * at(0, "pressure") + 9e6 * at(1, "displacement")
+
+    groups = [
+        SimpleNamespace(name="active", balances=True, count=3, displacement=2e-5, pressure=1e7),
+        SimpleNamespace(name="passive", balances=False, count=2, displacement=4e-5, pressure=5e6),
+    ]
+    point = [np.zeros(2)] * len(WINCH_SIGNALS)
+    for group in groups:
+        own = {"displacement": group.displacement, "pressure": group.pressure}
+        point += [np.full(2, own.get(name, 0.0)) for name in names]
+    run = SimpleNamespace(groups=groups, point=tuple(point), time=np.zeros(2), dt=0.02)
+    monkeypatch.setattr(module, "model_states", lambda *_: ())
+    found = module._displacement_columns(SimpleNamespace(torque=torque), run, {"groups": which})
+    assert found == pytest.approx(np.full((2, 1), column), rel=2e-3)
+    assert module.spoken_of(run, {"groups": which}) == list(spoken)
+
+
+def test_a_load_that_is_read_too_large_is_as_much_more_of_what_hangs(monkeypatch):
+    monkeypatch.setattr(module, "hanging", lambda run, mass: 9.81 * mass)
+    run = SimpleNamespace(load=np.array([1e3, 2e3]))
+    assert module._load_columns(run, {}) == pytest.approx(np.array([[9810.0], [19620.0]]))
+
+
+@pytest.mark.parametrize(
+    ("names", "losses", "found"),
+    [
+        # the finding's own partner, and that of its second rival
+        (("gear_load_loss", "x", "pressure_scale"), (30.0, 20.0, 25.0), [("displacement_scale", 2)]),
+        (("pressure_scale", "x"), (20.0, 25.0), [("displacement_scale", 0)]),
+        (("x", "layer_radius"), (20.0, 25.0), [("load_scale", 1)]),
+        (("x", "y"), (20.0, 25.0), []),
+    ],
+)
+def test_what_is_tied_to_a_finding_or_to_a_rival_has_its_size_beside_that_of_the_one_it_is_tied_to(
+    monkeypatch, names, losses, found
+):
+    """Names that do as well: those that leave least stay, what shows as a product alone comes last."""
+    labels = {"pressure_scale": "all groups, both ports", "layer_radius": "all layers"}
+    slots = [Slot(name, labels.get(name, ""), (k,), origin=(f"of {name}", "shape")) for k, name in enumerate(names)]
+    own, *rivals = slots
+    asked = []
+
+    def laid_out(base, fixed, runs, model):
+        asked.append((fixed, [run.name for run in runs]))
+        return SimpleNamespace(slots=tuple(f"slot {k}" for k in range(len(fixed))))
+
+    def explain(slots):
+        k = int(slots[-1].removeprefix("slot ")) if slots else None
+        loss = 100.0 if k is None else losses[k] if k < len(losses) else 22.0
+        return SimpleNamespace(loss=loss, at=k, slots=slots)
+
+    unsought_ones = [SimpleNamespace(name=name, shapes=lambda _: [SimpleNamespace(label="all groups")])
+                     for name in module.UNSOUGHT]  # fmt: skip
+    partners = lambda tie, cross, of, trial: SimpleNamespace(name=tie.second.name, of=of.at, own=trial.at)
+    monkeypatch.setattr(module, "layout_of", laid_out)
+    monkeypatch.setattr(module, "build_problem", lambda runs, layout, known: known)
+    monkeypatch.setattr(module, "CrossFit", lambda problem: SimpleNamespace(explain=explain))
+    monkeypatch.setattr(module, "_fixed", lambda candidate, shape: candidate)
+    monkeypatch.setattr(module, "unsought", lambda model: unsought_ones)
+    monkeypatch.setattr(module, "does_as_well", lambda *_: True)
+    monkeypatch.setattr(module, "_partner", partners)
+    search = SimpleNamespace(
+        expansion=SimpleNamespace(
+            model=None, runs=[SimpleNamespace(name=name) for name in ("a", "locked")],
+            layout=SimpleNamespace(base=None),
+        ),
+        train=("a",), selection=SimpleNamespace(final=SimpleNamespace(slots=(own,))),
+    )  # fmt: skip
+    said = company(search, Finding(own, tuple(rivals), 0.0, 0.1, 1.0, no_room=("fourth",)))
+    assert [(each.name, each.of, each.own) for each in said.partners] == [
+        (name, k, len(names)) for name, k in found
+    ]  # fmt: skip
+    assert all(runs == ["a"] for _, runs in asked)
+    left = dict(zip(names[1:], losses[1:], strict=True))
+    left |= {name: np.inf if name == "load_scale" else 22.0 for name, _ in found}
+    best = sorted(left, key=left.get)
+    assert said.rivals == (tuple(best[:2]) if found else names[1:])
+    assert said.no_room == (*best[2:], "fourth")
+
+
+def test_estimates_of_which_only_one_is_new_go_together_as_in_the_search():
+    """The file's own covariance is of what the search did not have; the other's is that of the seed."""
+    names = ["a", "b"]
+    slot = SimpleNamespace(columns=(4, 5), origin=(SimpleNamespace(linear=[SimpleNamespace(name=n) for n in names]),))
+    cross = SimpleNamespace(
+        problem=SimpleNamespace(columns=lambda _: (0, 4, 5)),
+        covariance=lambda _: np.array([[1.0, 0.0, 0.0], [0.0, 4.0, 3.0], [0.0, 3.0, 9.0]]),
+    )
+    file = SimpleNamespace(parameter_names=("b", "x", "a"), covariance=np.arange(9.0).reshape(3, 3))
+    final = SimpleNamespace(final=SimpleNamespace(slots=(slot,)))
+    estimates = {name: ParameterEstimate(1.0, std, "1") for name, std in (("a", 0.2), ("b", 6.0))}
+    for had, wanted in ((("b",), [[0.04, 0.6], [0.6, 36.0]]), ((), [[8.0, 6.0], [2.0, 0.0]])):
+        given = SimpleNamespace(model=SimpleNamespace(parameter_names=had))
+        search = SimpleNamespace(cross=cross, given=given, selection=final)
+        np.testing.assert_allclose(_covariance(search, SimpleNamespace(slot=slot), estimates, names, file), wanted)
+
+
+@pytest.mark.parametrize(
+    ("first", "second", "tied", "combined"),
+    [
+        (10.0, 10.0, 0.7, False),  # both are known alone
+        (10.0, 1.0, 0.7, True),  # one is not
+        (1.0, 10.0, 0.7, True),
+        (-10.0, -10.0, -0.95, True),
+        (10.0, 10.0, -0.85, False),
+        (1.0, 1.0, -0.45, False),
+        (1.0, 1.0, -0.55, True),
+    ],
+)
+def test_estimates_are_combined_where_they_are_tied_and_sooner_where_either_is_unknown(first, second, tied, combined):
+    estimates = {"a": ParameterEstimate(first, 1.0, "1"), "b": ParameterEstimate(second, 1.0, "1")}
+    found = _best_pair(np.array([[1.0, tied], [tied, 1.0]]), estimates, ["a", "b"])
+    assert (found is not None) is combined
+    if found is not None:
+        assert (found.value, found.std) == pytest.approx((first - tied * second, np.sqrt(1.0 - tied**2)))

@@ -7,7 +7,10 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from winch_friction.discrepancy import answer
+from winch_friction.discrepancy.adequacy import Check
 from winch_friction.discrepancy.answer import (
+    AMBIGUOUS,
     MISSING,
     NOTHING,
     UNEXPLAINED,
@@ -18,6 +21,7 @@ from winch_friction.discrepancy.answer import (
     Side,
     Verdict,
     decide,
+    keeps_something,
     named,
     steady_excess,
     unexplained_share,
@@ -229,3 +233,122 @@ def test_the_share_that_no_name_explains_is_one_of_what_lies_above_the_noise(kin
     base, final = SimpleNamespace(loss=before), SimpleNamespace(loss=after)
     selection = SimpleNamespace(base=base, final=final, found=["one"] * found)
     assert unexplained_share(SimpleNamespace(floor=10.0), selection, Verdict(kind)) == pytest.approx(share)
+
+
+# -- by figures of its own
+def found_are(*slots, rivals=(), before=None, after=None, depends=(), beyond=()):
+    """The verdict on these slots, of which the names in `beyond` are at their bound and in `rivals` have another."""
+    found = [SimpleNamespace(slot=own, rivals=("other",) * (own.name in rivals)) for own in slots]
+
+    class Final(np.ndarray):
+        names = tuple(dict.fromkeys(own.name for own in slots))
+
+    cross = crossed()
+    cross.at_bound = lambda _, slot: slot.name in beyond
+    base, final = (left(4.0, 4.0) if before is None else before), (left(0.0, 0.0) if after is None else after)
+    return decide(cross, SimpleNamespace(base=base, final=final.view(Final), found=found, untold=""), list(depends))
+
+
+A, B, C = (Slot(name, "", (), most=6.0) for name in ("a", "b", "c"))
+LAW = replace(B, law="another")
+
+
+@pytest.mark.parametrize(
+    ("slots", "kind", "said"),
+    [
+        ((A, B), MISSING, ""),
+        ((A, B, LAW), MISSING, ""),  # two laws of one cause are one effect
+        ((A, B, C), UNEXPLAINED, "it would take 3 effects at once to imitate it (a, b, c)"),
+    ],
+)
+def test_two_causes_are_an_answer_and_three_an_imitation(slots, kind, said):
+    found = found_are(*slots)
+    assert (found.kind, found.refused) == (kind, said)
+
+
+@pytest.mark.parametrize("beyond", ["a", "b"])
+def test_any_name_of_an_implausible_size_refuses_all(beyond):
+    found = found_are(A, B, beyond=(beyond,))
+    assert found.kind == UNEXPLAINED
+    assert found.refused == f"{beyond} would need an implausible size, 6 times what is typical or more"
+
+
+@pytest.mark.parametrize(("rivals", "kind"), [("", MISSING), ("a", AMBIGUOUS), ("b", AMBIGUOUS), ("ab", AMBIGUOUS)])
+def test_one_name_that_has_another_makes_an_answer_ambiguous(rivals, kind):
+    assert found_are(A, B, rivals=rivals).kind == kind
+
+
+@pytest.mark.parametrize(("steady", "kind"), [(2.9, NOTHING), (3.1, UNEXPLAINED)])
+def test_without_a_name_three_times_the_noise_is_something_where_nothing_swings(steady, kind):
+    """However much swings on the wire, which no friction model is to answer for."""
+    assert verdict(left(steady, 90.0)).kind == kind
+
+
+SURE, UNSURE = ([Dependence("speed", 0.2, p)] for p in (1e-3, 0.02))
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "depends", "kept"),
+    [
+        ((2.0, 2.0), (0.5, 0.0), SURE, 25),  # a quarter of what there is, which a signal predicts
+        ((2.0, 2.0), (0.5, 0.0), UNSURE, None),
+        ((2.0, 2.0), (0.5, 0.0), (), None),
+        ((2.0, 2.0), (0.25, 0.25), SURE, None),  # a quarter of the noise is nobody's effect
+        ((1.0, 200.0), (0.5, 0.0), SURE, 50),  # the steady blocks are held against the steady ones
+        ((200.0, 200.0), (0.0, 2.0), SURE, None),  # what swings: more than noise, and a hundredth of what was there
+        ((4.0, 4.0), (0.0, 2.0), SURE, 25),
+        ((1.0, 1.0), (0.0, 0.6), SURE, None),  # three tenths of the noise are nobody's effect
+        ((1.0, 99.0), (0.8, 9.2), SURE, 80),  # said is the larger share of the two, here of the steady blocks
+        ((99.0, 1.0), (9.2, 90.8), SURE, 100),
+    ],
+)
+def test_a_share_that_a_sure_signal_predicts_is_left_of_the_steady_blocks_or_of_all(before, after, depends, kept):
+    found = found_are(A, before=left(*before), after=left(*after), depends=depends)
+    assert found.refused == ("" if kept is None else f"a leaves {kept} % of the gap above the noise floor")
+    assert found.kind == (MISSING if kept is None else UNEXPLAINED)
+
+
+@pytest.mark.parametrize(
+    ("excess", "before", "share", "keeps"),
+    [
+        (0.5, 2.0, 0.05, True),  # half of what a signal must predict where there is no name
+        (0.5, 2.0, 0.03, False),
+        (1.6, 4.0, 0.0, True),  # that much needs no signal
+        (1.4, 4.0, 0.0, False),
+        (0.3, 0.4, 0.5, False),
+        (1.6, 20.0, 0.5, False),
+        (2.1, 50.0, 0.0, True),
+        (2.1, 60.0, 0.0, False),
+    ],
+)
+def test_what_is_kept_is_something_by_its_size_its_share_and_what_points_at_it(excess, before, share, keeps):
+    assert keeps_something(excess, before, [Dependence("speed", share, 1e-3)]) is keeps
+
+
+def test_a_shaft_that_brakes_is_not_steady():
+    slows = np.where(STEADY, 0.0, -1.0)
+    assert steady_excess(crossed(slows), left(0.5, 7.0)) == pytest.approx(0.5)
+
+
+def test_regions_are_those_of_the_training_runs_as_the_model_was_given(monkeypatch):
+    monkeypatch.setattr(answer, "find_regions", lambda blocks, gap, read_as: [(blocks, gap, read_as)])
+    train = replace(kept("abc", 1.0), before=np.arange(6.0))
+    whole = GapResult(MISSING, "", (), "bar", train, kept("de", 2.0), (), 0.0, (), (), None, None)
+    assert whole.regions == ((train.blocks, train.before, answer.READ_AS),)
+
+
+def test_what_else_was_said_is_written_as_it_was_said():
+    content = result(
+        notes=("slow log",), adequacy=(Check("rate", 20.0, 5.0, "Hz", True),), provenance={"seed": 3},
+        seed_refuted=[SimpleNamespace(content=lambda: {"parameter": "K4"})],
+    )  # fmt: skip
+    assert (content["notes"], content["provenance"]) == (["slow log"], {"seed": 3})
+    assert content["seed_refuted"] == [{"parameter": "K4"}]
+    assert list(content["adequacy"][0].values()) == ["rate", 20.0, 5.0, "Hz", True]
+
+
+def test_the_shaft_is_steady_by_a_share_of_its_largest_acceleration_and_not_of_its_usual_one():
+    """Six blocks of ten hardly accelerate, the others fifty times as much."""
+    calm = np.arange(SIZE) < 600
+    found = steady_excess(crossed(np.where(calm, 0.02, 1.0)), np.sqrt(1.0 + np.where(calm, 0.5, 7.0)))
+    assert found == pytest.approx(0.5)

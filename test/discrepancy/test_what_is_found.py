@@ -182,3 +182,84 @@ def test_a_set_that_leaves_out_more_names_than_it_has_room_for_tells_them_all():
     assert Selection(base, final, (crowd, replace(crowd, slot=TWO, rivals=()))).untold == (
         "one is not told from r, a, b, c, d; two is not told from a, b, c, d"
     )
+
+
+def test_what_is_taken_is_as_sure_as_it_is_itself_and_not_as_the_surest_beside_it(monkeypatch):
+    """The one that takes less is surer."""
+    trials = [explained((ONE,), 900.0), explained((TWO,), 500.0)]
+    monkeypatch.setattr(module, "candidate_trials", lambda *_: trials)
+    monkeypatch.setattr(module, "_evidence", lambda *_: np.array([1e-4, 7e-4]))
+    monkeypatch.setattr(module, "_exchanged", lambda _, own: own)
+    cross = SimpleNamespace(gain=lambda *_: 0.3, inside_gain=lambda *_: 0.3, problem=SimpleNamespace(slots=(ONE, TWO)))
+    considered, p_values = [], {}
+    assert _forward(cross, explained((), 2000.0), explained((), 2000.0), RNG, 1, considered, p_values) is trials[1]
+    assert p_values == {"two": 7e-4}
+    assert [(each.name, each.p_value, each.verdict) for each in considered] == [
+        ("two", 7e-4, module.TAKEN),
+        ("one", 1e-4, "significant and useful, but outdone in held-out loss by the one taken"),
+    ]
+
+
+@pytest.mark.parametrize(("segments", "as_good"), [(1, True), (40, False)])
+def test_plain_effects_that_are_worse_in_every_segment_are_not_worse_by_chance(segments, as_good):
+    """By as much in all; in one segment alone it may be chance."""
+    behind = np.where(np.arange(40) < segments, 100.0 / segments, 0.0)
+    other = replace(explained((TWO,), 0.0), losses=np.full(40, 10.0))
+    assert _no_worse(replace(explained((ONE,), 0.0), losses=other.losses + behind), other, RNG) is as_good
+    assert _no_worse(replace(other, losses=other.losses - behind), other, RNG)
+
+
+@pytest.mark.parametrize(
+    ("gain", "level"),
+    [(0.5, 0.05), (0.1, 0.05), (0.0999, 0.01), (0.02, 0.01), (0.0199, 1e-3), (0.01, 1e-3), (0.001, 1e-3)],
+)
+def test_a_gain_has_the_level_of_the_least_that_it_reaches(gain, level):
+    surer, less = (module._significant(np.array([p]), np.array([gain])).tolist() for p in (level, 1.01 * level))
+    assert (surer, less) == ([True], [False])
+
+
+def test_an_effect_that_was_never_asked_alone_is_as_sure_as_what_it_saves_of_each_segment(monkeypatch):
+    losses = {(): 400.0, (ONE,): 100.0}
+    cross = SimpleNamespace(explain=lambda slots: explained(slots, losses[tuple(slots)]), gain=lambda *_: 0.5)
+    monkeypatch.setattr(module, "rivals_of", lambda *_, same: ((), 1.0))
+    assert _found(cross, cross.explain((ONE,)), 0, {}, RNG).p_value == pytest.approx(1.0 / (1.0 + LIMITS.flips))
+
+
+def test_what_could_stand_for_a_second_law_of_a_cause_is_no_other_name_for_it():
+    first = Finding(ONE, (TWO,), 0.0, 0.1, 1.0, tuple("abcd"))
+    again = replace(first, slot=replace(ONE, law="bent"))
+    other = replace(first, slot=TWO)
+    found = module._one_set_each((first, again, other))
+    assert [(len(each.rivals), len(each.no_room)) for each in found] == [(1, 4), (0, 0), (1, 4)]
+    assert [each.slot.law for each in found] == ["", "bent", ""]
+
+
+@pytest.mark.parametrize(
+    ("together", "anew", "taken"),
+    [(90.0, None, "together"), (110.0, None, "one"), (110.0, 20.0, "anew"), (110.0, 90.0, "one"), (90.0, 20.0, "anew")],
+)
+def test_what_begins_otherwise_is_taken_where_it_leaves_less(monkeypatch, together, anew, taken):
+    """One by one 100 are left; of plain effects all together less will do, of another first cause it must be half."""
+    names = {name: Slot(name, "", (k,)) for k, name in enumerate(("one", "together", "anew"), start=1)}
+    losses = {"one": 100.0, "together": together, "anew": anew}
+    base = explained((), 1000.0)
+    begun = {0.0: "one", 1.0: "together", 2.0: "anew"}
+    start = explained((TWO,), 1.0)
+
+    def forward(cross, base, start, rng, most, considered, p_values):
+        name = begun[start.loss if start.slots else 0.0]
+        considered.append(name)
+        p_values[name] = 0.01
+        return explained((names[name],), losses[name])
+
+    monkeypatch.setattr(module, "_forward", forward)
+    monkeypatch.setattr(module, "_whole", lambda cross, own, rng, apart: own)
+    monkeypatch.setattr(module, "_plain_together", lambda *_: start)
+    monkeypatch.setattr(module, "other_start", lambda *_: None if anew is None else explained((TWO,), 2.0))
+    monkeypatch.setattr(module, "far_less", lambda cross, new, old: new.loss <= 0.5 * old.loss)
+    monkeypatch.setattr(
+        module, "_found", lambda cross, own, k, p, rng: Finding(own.slots[k], (), p[own.names[0]], 0, 1)
+    )
+    found = module.select(SimpleNamespace(explain=lambda _: base), RNG)
+    assert (found.base, found.final.names, found.found[0].p_value) == (base, (taken,), 0.01)
+    assert list(found.considered) == ["one"] + ["together"] * (together == 90.0) + ["anew"] * (taken == "anew")

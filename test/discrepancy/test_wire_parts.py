@@ -35,6 +35,7 @@ from winch_friction.discrepancy.preparation.wires import (
     _slow,
     agreed_damping,
     denies,
+    ringing_damping,
 )
 
 DT = 0.02
@@ -251,3 +252,63 @@ def test_a_frequency_that_is_off_what_the_wire_gives_is_put_right(own, found):
 def test_runs_agree_on_whichever_scatters_less(ratios, masses, expected):
     found = agreed_damping([(8.0, ratio, mass) for ratio, mass in zip(ratios, masses, strict=True)])
     assert (found is None) if expected is None else (found(8.0, 1e4), found(8.0, 9e4)) == pytest.approx(expected)
+
+
+@pytest.mark.parametrize(
+    ("less", "damped", "taken"), [(0.3, 0.06, True), (0.49, 0.06, True), (0.6, 0.06, False), (0.3, 0.55, False)]
+)
+def test_a_stiffness_beside_the_stated_one_leaves_half_of_what_that_leaves_and_is_a_ropes(less, damped, taken):
+    """Three fifths of it; the stated one leaves 0.8 by any damping."""
+    own = 7.0 * np.sqrt(0.6)
+    left = lambda frequency, ratio: min(0.8, valley((own, damped), 0.8 * less)(frequency, ratio))
+    found = _nearby(left, 0.8, 0.05, 7.0)
+    assert (found[2] != 7.0) is taken
+    assert found == (0.8, 0.05, 7.0) or found[0] == pytest.approx(0.8 * less, abs=0.02)
+
+
+@pytest.mark.parametrize("size", [1e-16, 1.0, 1e16])
+def test_a_cause_takes_no_part_of_a_swing_whatever_its_unit(size):
+    wave, cause = np.sin(TIME), size * np.cos(3.0 * TIME)
+    judge = _Judge(2.0 * wave + 5.0 * np.cos(3.0 * TIME), TIME >= 0.0, lambda *_: 0.0 * wave, [cause[:, None]])
+    assert judge.swinging(1) == pytest.approx(2.0, rel=0.05)
+    # the same cause once more takes nothing: what is left of it is rounding
+    twice = _Judge(2.0 * wave, TIME >= 0.0, lambda *_: 0.0 * wave, [np.column_stack([cause, 2.0 * cause])])
+    assert twice.swinging(1) == pytest.approx(2.0, rel=0.05)
+
+
+# -- runs that ring
+def rings(length=50.0, mass=5e4, ratio=0.05, stiffness=4e8, least=0.1, variance=10.0):
+    """A run whose load rings on a rope of this length, m, and stiffness times length, N; and its variance."""
+    left = np.where(np.array(DAMPING_RATIOS) < 0.2, least, 4.0 * least)
+    return (np.sqrt(stiffness / length / mass), ratio, mass), left, length, variance
+
+
+def rigid(variance=10.0, share=1.5):
+    return (8.0, 0.0, 5e4), np.full(11, share), 50.0, variance
+
+
+def told(*runs):
+    found = ringing_damping(*map(list, zip(*runs, strict=True)))
+    return None if found is None else found[1]
+
+
+@pytest.mark.parametrize(
+    ("runs", "stiffness"),
+    [
+        ((rings(50.0), rings(80.0, 3e4)), 4e8),
+        ((rings(50.0), rings(80.0, stiffness=5e8)), None),  # of one wire all ring by one stiffness
+        ((rings(50.0), rings(80.0, ratio=0.1)), None),  # and by one damping
+        ((rings(50.0, least=0.09),), 4e8),  # one alone that rings plainly
+        ((rings(50.0, least=0.12),), None),
+        ((rings(50.0), rings(60.0, stiffness=4.08e8), rings(stiffness=9e8), rings(stiffness=2e9)), 4.04e8),
+        ((rings(50.0), rings(80.0), rigid()), 4e8),
+        ((rings(50.0), rings(80.0), rigid(), rigid()), None),  # as many say that the wire does not give
+        ((rings(50.0), rings(80.0), rigid(), rigid(share=1.1)), 4e8),  # that one hardly does
+        ((rings(50.0), rings(80.0), rigid(1.0), rigid(1.0)), 4e8),  # next to nothing beside what swings: 0.5 of 9
+        ((rings(50.0), rings(80.0), rigid(3.0), rigid(3.0)), None),
+        ((rings(50.0), rings(80.0, variance=100.0), rigid(3.0), rigid(3.0)), None),  # of the one that swings least
+        ((rigid(), rigid()), None),
+    ],
+)
+def test_runs_that_ring_tell_one_stiffness_where_no_more_deny_it(runs, stiffness):
+    assert told(*runs) == (None if stiffness is None else pytest.approx(stiffness))

@@ -1,5 +1,6 @@
 """What all tests share: the shipped crane and models, and the real data beside the project where it is there."""
 
+import gc
 from pathlib import Path
 
 import pytest
@@ -22,6 +23,12 @@ def pytest_collection_modifyitems(items):
             # processes judged by the clock: a machine that stood still for a moment is no defect, and a defect fails
             # three times. pytest says at the end which needed it
             item.add_marker(pytest.mark.flaky(reruns=2))
+
+
+def pytest_collection_finish():
+    """Ten thousand tests and all that they import stand to the end: the collector need not go through them again."""
+    gc.collect()
+    gc.freeze()
 
 
 @pytest.fixture(scope="session")

@@ -1,5 +1,6 @@
 """What all tests share: the shipped crane and models, and the real data beside the project where it is there."""
 
+import gc
 from pathlib import Path
 
 import pytest
@@ -15,12 +16,19 @@ SHARED = Path(__file__).resolve().parents[2] / "shared" / "data"
 def pytest_collection_modifyitems(items):
     """Long files first; within a file, and among the others, as they stand. Live nodes get two more tries."""
     here = Path(__file__).parent
-    items.sort(key=lambda item: -SECONDS.get(item.path.relative_to(here).as_posix(), 0))
+    seconds = {path: SECONDS.get(path.relative_to(here).as_posix(), 0) for path in {item.path for item in items}}
+    items.sort(key=lambda item: -seconds[item.path])
     for item in items:
         if item.get_closest_marker("ros"):
             # processes judged by the clock: a machine that stood still for a moment is no defect, and a defect fails
             # three times. pytest says at the end which needed it
             item.add_marker(pytest.mark.flaky(reruns=2))
+
+
+def pytest_collection_finish():
+    """Ten thousand tests and all that they import stand to the end: the collector need not go through them again."""
+    gc.collect()
+    gc.freeze()
 
 
 @pytest.fixture(scope="session")

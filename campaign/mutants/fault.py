@@ -1,5 +1,6 @@
 """The list of faults: what is changed, in which file, and which tests should notice."""
 
+from collections import Counter
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -37,8 +38,7 @@ def all_faults(path: Path = LIST) -> list[Fault]:
         Fault(each["name"], f"winch_friction/{each['file']}", each["old"], each["new"], tuple(each["tests"]))
         for each in entries
     ]
-    names = [fault.name for fault in faults]
-    twice = sorted({name for name in names if names.count(name) > 1})
+    twice = sorted(name for name, count in Counter(fault.name for fault in faults).items() if count > 1)
     if twice:
         raise ValueError(f"two faults are called {twice[0]}")
     return faults

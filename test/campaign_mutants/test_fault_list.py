@@ -1,26 +1,51 @@
 """The list of faults must fit the code it is about: a fault that no longer applies would silently test nothing."""
 
 import ast
+import re
 
 import pytest
 
 from campaign.mutants.__main__ import Outcome, noticed_before, page, stands
-from campaign.mutants.fault import ROOT, Fault, all_faults
+from campaign.mutants.fault import LIST, ROOT, Fault, all_faults
 
-FAULTS = all_faults()
 FEWEST = 60
+# by their lines: every worker looks at the tests, and one of them reads the list
+FILES = sorted({f"winch_friction/{file}" for file in re.findall(r"^  file: (\S+)$", LIST.read_text(), re.MULTILINE)})
 
 
-def test_there_are_enough_faults():
-    assert len(FAULTS) >= FEWEST
+@pytest.fixture(scope="module")
+def faults():
+    return all_faults()
 
 
-@pytest.mark.parametrize("file", sorted({fault.file for fault in FAULTS}))
-def test_every_fault_applies(file):
+def test_there_are_enough_faults(faults):
+    assert len(faults) >= FEWEST
+    assert {fault.file for fault in faults} == set(FILES)
+
+
+def statements(source):
+    """The first and the last line, from 1, of each statement of a file."""
+    own = [(each, getattr(each, "decorator_list", [])) for each in ast.parse(source).body]
+    return [(min(part.lineno for part in (each, *before)), each.end_lineno) for each, before in own]
+
+
+def changed_part(source, spans, fault):
+    """The statements of a file that a fault changes, as it leaves them: all others parse as before."""
+    fault.changed(source)
+    first = source.count("\n", 0, source.index(fault.old)) + 1
+    last = first + fault.old.count("\n")
+    touched = [(first, last), *(span for span in spans if span[0] <= last and span[1] >= first)]
+    begin, end = min(span[0] for span in touched), max(span[1] for span in touched)
+    return "".join(source.splitlines(keepends=True)[begin - 1 : end]).replace(fault.old, fault.new)
+
+
+@pytest.mark.parametrize("file", FILES)
+def test_every_fault_applies(file, faults):
     source, wrong = (ROOT / file).read_text(), []
-    for fault in (each for each in FAULTS if each.file == file):
+    spans = statements(source)
+    for fault in (each for each in faults if each.file == file):
         try:
-            ast.parse(fault.changed(source))
+            ast.parse(changed_part(source, spans, fault))
         except (ValueError, SyntaxError) as error:
             wrong.append(f"{fault.name}: {error}")
         if not fault.tests or not all((ROOT / test.split("::")[0]).exists() for test in fault.tests):
@@ -28,8 +53,20 @@ def test_every_fault_applies(file):
     assert not wrong
 
 
-def test_no_two_faults_have_one_name():
-    assert len({fault.name for fault in FAULTS}) == len(FAULTS)
+def test_no_two_faults_have_one_name(faults):
+    assert len({fault.name for fault in faults}) == len(faults)
+
+
+@pytest.mark.parametrize(("new", "parses"), [("return 2", True), ("return (", False)])
+def test_a_fault_that_does_not_parse_is_told_by_the_statements_that_it_changes(new, parses):
+    source = "A = 1\n\n\n@cache\ndef first():\n    return 1\n\n\ndef other():\n    return 3\n"
+    part = changed_part(source, statements(source), Fault("any", "any.py", "return 1", new, ()))
+    assert part == f"@cache\ndef first():\n    {new}\n"
+    if parses:
+        ast.parse(part)
+    else:
+        with pytest.raises(SyntaxError):
+            ast.parse(part)
 
 
 def test_a_text_that_stands_twice_is_refused():

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from winch_friction.api.work import simulate
-from winch_friction.commissioning.balance import _top
+from winch_friction.commissioning.balance import top
 from winch_friction.commissioning.channels import (
     clock_findings,
     frozen_findings,
@@ -155,8 +155,8 @@ def test_recordings_of_several_days_in_one_file_are_looked_at_one_by_one(pause):
 
 @pytest.mark.filterwarnings("error")
 def test_a_run_without_a_number_in_its_speed_warns_of_nothing():
-    assert np.isnan(_top(np.full(5, np.nan)))
-    assert _top(np.array([np.nan, 3.0, 3.0])) == 3.0
+    assert top(np.full(5, np.nan)) == 0.0
+    assert top(np.array([np.nan, 3.0, 3.0])) == 3.0
 
 
 @pytest.mark.parametrize(("during", "stuck"), [(0.0, []), (20.0, ["shaft_angle"])])

@@ -6,9 +6,10 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from winch_friction.commissioning.balance import top
 from winch_friction.commissioning.check import quick_check
 from winch_friction.commissioning.diagnose import _Bench
-from winch_friction.commissioning.kinematics import LATE, MOST, SURE, _top, agreements, score_of, ways
+from winch_friction.commissioning.kinematics import LATE, MOST, SURE, agreements, score_of, ways
 from winch_friction.commissioning.mistakes import delayed
 from winch_friction.commissioning.view import view_of
 from winch_friction.simulation import load_scenario, simulate
@@ -82,8 +83,8 @@ def test_the_top_of_a_channel_is_numpys_percentile_to_the_last_digit():
     draw = np.random.default_rng(5)
     for size in (1, 2, 3, 51, 52, 100, 101, 333):
         values = np.concatenate([draw.normal(size=size), [np.nan, np.inf]])
-        assert _top(values) == np.percentile(np.abs(values[:size]), 99)
-    assert _top(np.array([np.nan])) == 0.0
+        assert top(values) == np.percentile(np.abs(values[:size]), 99)
+    assert top(np.array([np.nan])) == 0.0
 
 
 def test_a_drum_speed_beside_the_motors_is_held_against_the_gear(crane_150t, crane2_model):

@@ -23,6 +23,11 @@ def without_column(run):
     return replace(run, columns={k: v for k, v in run.columns.items() if not k.endswith("_simulated")})
 
 
+def first_minute(run):
+    """Less of a run for an FMU whose every step, one in 2 ms, calls Python."""
+    return replace(run, columns={name: values[:3000] for name, values in run.columns.items()})
+
+
 def names_of(found):
     return {each["name"] for each in found["effects"]} | {
         rival for each in found["effects"] for rival in each["indistinguishable_from"]
@@ -82,7 +87,7 @@ def test_an_fmu_gives_the_column_that_its_formulas_give(fmu):
 def test_the_verb_takes_an_fmu_and_writes_what_to_add(fmu, tmp_path, capsys):
     """From files to files: logs without a simulated column, the FMU, the table for the simulation's owner."""
     for k in range(6):
-        write_run(without_column(cycle(40 + k, f"run_{k}")), tmp_path / "runs" / f"run_{k}.csv")
+        write_run(first_minute(without_column(cycle(40 + k, f"run_{k}"))), tmp_path / "runs" / f"run_{k}.csv")
     out = tmp_path / "out"
     call = ["gap", str(tmp_path / "runs"), "--crane", "crane_150t", "--model", "a6vm215_crane2", "--out", str(out)]
     assert main.run([*call, "--fmu", str(fmu[0])]) == 2

@@ -26,19 +26,22 @@ def zero_bytes(path):
 
 
 def gzip_bomb(path):
-    with gzip.open(path, "wb", compresslevel=9) as stream:
+    with gzip.open(path, "wb", compresslevel=1) as stream:
         for _ in range(300):
             stream.write(bytes(1 << 20))
 
 
 def zip_bomb(path):
-    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive, archive.open("log.csv", "w") as stream:
+    with (
+        zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED, compresslevel=1) as archive,
+        archive.open("log.csv", "w") as stream,
+    ):
         for _ in range(300):
             stream.write(b"0" * (1 << 20))
 
 
 def workbook_bomb(path):
-    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
+    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED, compresslevel=1) as archive:
         archive.writestr("[Content_Types].xml", "<Types/>")
         with archive.open("xl/worksheets/sheet1.xml", "w") as stream:
             for _ in range(300):

@@ -35,7 +35,7 @@ def crane2() -> CompiledTerms:
 
 # all of them are compiled once more in `make test-long`; those with states, which are written otherwise, in each run
 SOME = [
-    pytest.param(name, marks=pytest.mark.long if k % 4 and not term.state else [])
+    pytest.param(name, marks=pytest.mark.long if k % 8 and not term.state else [])
     for k, (name, term) in enumerate(sorted(registered_terms().items()))
 ]
 

@@ -8,8 +8,10 @@ from dds_bench import Bench
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    here = Path(__file__).parent
+    own = {path for path in {item.path for item in items} if here in path.parents}
     for item in items:
-        if Path(__file__).parent in item.path.parents:
+        if item.path in own:
             item.add_marker(pytest.mark.ros)
 
 

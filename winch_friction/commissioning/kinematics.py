@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from winch_friction.commissioning.balance import Closure, closure, static_torque
+from winch_friction.commissioning.balance import Closure, closure, static_torque, top
 from winch_friction.commissioning.view import GroupView, RunView, usable
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.signals import FloatArray, Run
@@ -127,17 +127,17 @@ MOST_BEYOND = 400.0
 
 def excesses(view: RunView) -> dict[str, float]:
     """By channel: its 99th percentile over the upper limit, or the lower limit over it, where that is above 1."""
-    found = {"heave_velocity": _top(view.heave) / ROUGHEST if view.heave is not None else 0.0}
+    found = {"heave_velocity": top(view.heave) / ROUGHEST if view.heave is not None else 0.0}
     if view.groups:
-        found["motor_speed"] = _top(view.speed) / FASTEST
+        found["motor_speed"] = top(view.speed) / FASTEST
         heaviest = HEAVIEST * RATED_TO_LIMIT * view.rated_torque
-        found["hook_load"] = _top(static_torque(view)) / heaviest if heaviest > 0.0 else 0.0
-    widest = max((_top(group.displacement) for group in view.groups.values()), default=0.0)
+        found["hook_load"] = top(static_torque(view)) / heaviest if heaviest > 0.0 else 0.0
+    widest = max((top(group.displacement) for group in view.groups.values()), default=0.0)
     for name, group in view.groups.items():
-        too_low = LOWEST_SUM / max(_top(group.pressure_sum), 1e-300)
-        found[f"{name}.pressure"] = max(_top(group.drop) / HIGHEST, too_low)
+        too_low = LOWEST_SUM / max(top(group.pressure_sum), 1e-300)
+        found[f"{name}.pressure"] = max(top(group.drop) / HIGHEST, too_low)
         if view.max_displacement > 0.0:
-            largest = _top(group.displacement)
+            largest = top(group.displacement)
             told = widest if _swung_out(group) else largest
             too_small = SMALLEST_DISPLACEMENT * view.max_displacement / max(told, 1e-300)
             too_large = largest / (LARGEST_DISPLACEMENT * view.max_displacement)
@@ -169,20 +169,6 @@ def tells_speed(view: RunView, crane: Crane) -> bool:
         return True
     inertial, drive = view.inertia * view.acceleration, view.drive_torque
     return bool(np.nanmean(np.square(inertial)) > INERTIAL**2 * np.nanmean(np.square(drive)))
-
-
-def _top(values: FloatArray) -> float:
-    """The 99th percentile of the magnitudes, with linear interpolation between ranks: `np.percentile`, whose checks of
-    its arguments take several times as long as the work and come a hundred thousand times in a diagnosis."""
-    good = np.abs(values[np.isfinite(values)])
-    if not good.size:
-        return 0.0
-    rank = 0.99 * (good.size - 1)
-    lower = int(rank)
-    upper, share = min(lower + 1, good.size - 1), rank - lower
-    good.partition((lower, upper))
-    a, b = float(good[lower]), float(good[upper])
-    return a + (b - a) * share if share < 0.5 else b - (b - a) * (1.0 - share)
 
 
 # -- all of it

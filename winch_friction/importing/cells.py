@@ -90,7 +90,7 @@ def is_missing(cell: Any) -> bool:
 
 def decimal_mark(cells: Iterable[str], delimiter: str) -> tuple[str, str]:
     """Decimal mark and mark of thousands under which most cells are numbers; a point where nothing tells."""
-    texts = [_signed(cell) for cell in cells if isinstance(cell, str) and any(c.isdigit() for c in cell)]
+    texts = [_signed(cell) for cell in cells if isinstance(cell, str) and any(map(str.isdigit, cell))]
     choices = [
         (".", ""),
         (",", ""),
@@ -103,6 +103,8 @@ def decimal_mark(cells: Iterable[str], delimiter: str) -> tuple[str, str]:
         (",", "\u00a0"),
     ]
     choices = [(d, t) for d, t in choices if delimiter not in (d, t) or any(d in x or t in x for x in texts)]
+    every = "\0".join(texts)
+    choices = [(d, t) for d, t in choices if t in every]  # one that nobody writes makes no more of them numbers
     counts = []
     for decimal, thousands in choices:
         counts.append(sum(map(bool, map(number_pattern(decimal, thousands).match, texts))))

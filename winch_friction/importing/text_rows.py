@@ -85,9 +85,7 @@ class TextRows:
         reader = csv.reader((f"{line}\n" for line in self._lines), delimiter=self._delimiter)
         try:
             for row in reader:
-                if any(cell.strip() for cell in row) and not (
-                    reader.line_num == 1 and row[0].lower().startswith("sep=")
-                ):
+                if any(map(str.strip, row)) and not (reader.line_num == 1 and row[0].lower().startswith("sep=")):
                     yield reader.line_num, row
         except csv.Error as error:
             raise InputError(f"{self.path}: line {reader.line_num}: {error}") from error

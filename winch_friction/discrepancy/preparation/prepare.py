@@ -132,7 +132,7 @@ class PreparedRun:
 
 def samples_of_each(arrays: Iterable[Any], samples: np.ndarray | slice) -> tuple[Any, ...]:
     """These samples of each; what is one number for a whole run stays one."""
-    return tuple(each[samples] if np.ndim(each) else each for each in arrays)
+    return tuple(each[samples] if isinstance(each, np.ndarray) and each.ndim else each for each in arrays)
 
 
 def prepare(

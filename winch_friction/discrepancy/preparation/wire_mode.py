@@ -205,6 +205,7 @@ class _Judge:
         self._widths = np.cumsum([0] + [each.shape[1] for each in besides])
         self._axes = self._orthonormal([column for each in besides for column in each.T])
         self._rigid = self._components(self._gap)
+        self._whole = [self._variance(parts, self._rigid) for parts in range(len(self._widths))]
         self._seen: dict[tuple[float, float], tuple[float, FloatArray]] = {}
 
     def of(self, change: Callable[[float, float], FloatArray]) -> "_Judge":
@@ -218,7 +219,7 @@ class _Judge:
         if (frequency, ratio) not in self._seen:
             changed = self._gap + self._levelled(self._change(frequency, ratio))
             self._seen[frequency, ratio] = self._components(changed)
-        return self._variance(parts, self._seen[frequency, ratio]) / self._variance(parts, self._rigid)
+        return self._variance(parts, self._seen[frequency, ratio]) / self._whole[parts]
 
     def by_damping(self, parts: int, frequency: float) -> tuple[float, ...]:
         """The shares that a mode of each of `DAMPING_RATIOS` leaves."""

@@ -95,6 +95,10 @@ class Term:
     doc: str = ""
     table: "Table | None" = None  # of a term that the model file declares (winch_friction.physics.friction.table)
 
+    def __hash__(self) -> int:
+        """Of the name, which is its own: at every sample whoever asks for compiled functions hashes all terms."""
+        return hash(self.name)
+
     def __post_init__(self) -> None:
         unknown = self.free_symbols - self.parameter_symbols - set(symbols.SIGNAL_OF_SYMBOL) - self.state_symbols
         if unknown:

@@ -13,6 +13,7 @@ from winch_friction.compensation.config import OLDEST_INPUT
 from winch_friction.estimation import Estimate, EstimatorConfig
 from winch_friction.nodes.base import ERROR, OK, URGENT_PERIOD, WARN, Health, WinchNode
 from winch_friction.nodes.inputs import ROS, Inputs
+from winch_friction.nodes.options import NodeOptions
 from winch_friction.nodes.parameters import OptionParameters
 from winch_friction.nodes.qos import LATCHED, OUTPUT, overridable
 from winch_friction.nodes.rates import InputHealth
@@ -50,6 +51,8 @@ class EstimatorNodeOptions:
 
 class EstimatorNode(WinchNode):
     """Learns at every speed message; publishes `friction_model` and `~/friction_torque`."""
+
+    executable, told_by = "estimator", (NodeOptions, EstimatorNodeOptions, EstimatorConfig)
 
     def __init__(self, **node_arguments: Any) -> None:
         self._config = OptionParameters(EstimatorConfig, fixed=EstimatorConfig.__dataclass_fields__)

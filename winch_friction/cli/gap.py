@@ -196,7 +196,7 @@ def run_gap(
     assumed = not (model or crane)
     model = model or _usual_model(crane, paths)
     crane = load_model(MODEL).crane if assumed else crane
-    conventions = bag_options_of(params_file, namespace)
+    conventions = bag_options_of(params_file, namespace) if params_file or namespace else {}
     read, loaded_crane, seed_model = read_inputs(paths, crane, model, conventions, unstated)
     warned = [*(each for run in read for each in run.warnings), *same_recordings(read)]
     show_warnings(warned)

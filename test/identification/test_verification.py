@@ -247,6 +247,8 @@ def test_the_error_while_turning_leaves_standstill_out():
     check = PressureCheck("r", "main", np.arange(4.0), speed, np.zeros(4), error)
     assert check.moving_rms == pytest.approx(np.sqrt((9.0 + 16.0) / 2.0) * BAR)
     assert check.rms == pytest.approx(np.sqrt((81.0 + 81.0 + 9.0 + 16.0) / 4.0) * BAR)
+    none = replace(check, speed=np.abs(speed) * np.array([1.0, 1.0, 0.0, 0.0]))  # what turned showed no stroke
+    assert np.isnan([none.moving_rms, none.mean_error(-1)]).all()
 
 
 def test_an_error_with_the_hook_alone_is_in_per_cent_of_the_heaviest_test(truth):

@@ -98,17 +98,23 @@ class PressureCheck:
     @property
     def rms(self) -> float:
         """Root mean square error over the whole run, Pa."""
-        return float(np.sqrt(np.mean((self.predicted - self.measured) ** 2)))
+        return _root_mean_square(self.predicted - self.measured)
 
     @property
     def moving_rms(self) -> float:
         """Root mean square error while the winch turns, Pa: at standstill friction is undetermined."""
         moving = np.abs(self.speed) > STANDSTILL * self.speed_scale
-        return float(np.sqrt(np.mean((self.predicted - self.measured)[moving] ** 2)))
+        return _root_mean_square((self.predicted - self.measured)[moving])
 
     def mean_error(self, direction: int) -> float:
-        """Mean of predicted minus measured while hoisting (+1) or lowering (-1), Pa."""
-        return float(np.mean((self.predicted - self.measured)[self.speed * direction > 10 * RPM * self.speed_scale]))
+        """Mean of predicted minus measured while hoisting (+1) or lowering (-1), Pa; NaN where nothing shows it."""
+        shown = (self.predicted - self.measured)[self.speed * direction > 10 * RPM * self.speed_scale]
+        return float(np.mean(shown)) if len(shown) else np.nan
+
+
+def _root_mean_square(errors: FloatArray) -> float:
+    """NaN of none."""
+    return float(np.sqrt(np.mean(errors**2))) if len(errors) else np.nan
 
 
 def pressure_check(run: Run, crane: Crane, model: FrictionModel, displacement_scale: float = 0.0) -> PressureCheck:

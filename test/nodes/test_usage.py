@@ -17,7 +17,7 @@ from winch_friction.nodes.usage import own_arguments
 @pytest.fixture(autouse=True)
 def _no_pipes(monkeypatch: pytest.MonkeyPatch) -> None:
     for name in ("Ending", "Console"):
-        monkeypatch.setattr(of_run, name, lambda: type("", (), {"end": lambda self: None, "asked": False})())
+        monkeypatch.setattr(of_run, name, lambda: type("", (), {"end": lambda self: None, "asked": True})())
 
 
 @pytest.mark.parametrize("kind", [CompensatorNode, EstimatorNode, SimulatorNode], ids=lambda kind: kind.executable)

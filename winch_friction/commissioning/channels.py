@@ -16,7 +16,7 @@ from winch_friction.physics.channels import display_unit
 from winch_friction.physics.errors import counted
 from winch_friction.physics.signals import FloatArray, Run, column_unit
 from winch_friction.physics.winch.crane import Crane
-from winch_friction.physics.winch.operating_point import ChannelRanges
+from winch_friction.physics.winch.operating_point import DISPLACEMENT_MARGIN
 from winch_friction.records.unit_names import conversion_to_si
 
 SEVERITIES = ("error", "warning", "note")  # what contradicts the crane, what deserves a look, what is only said
@@ -236,7 +236,7 @@ def reading_findings(runs: Sequence[Run], crane: Crane) -> Iterator[Finding]:
 
 
 def _of_strokes(run: Run, crane: Crane) -> Iterator[Finding]:
-    lowest = ChannelRanges(crane).range("displacement")[0]
+    lowest = -DISPLACEMENT_MARGIN * crane.max_displacement  # the nodes' own, m^3/rad
     for name in (f"{group}.displacement" for group in run.groups if crane.max_displacement):
         strokes = _sane(run, name)
         beyond = float(np.mean(strokes < lowest)) if len(strokes) and strokes.max() > 0.0 else 0.0

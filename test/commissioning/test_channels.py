@@ -8,8 +8,10 @@ import pytest
 from winch_friction.api.work import simulate
 from winch_friction.commissioning.balance import top
 from winch_friction.commissioning.channels import (
+    FIRST_READINGS,
     clock_findings,
     frozen_findings,
+    reading_findings,
     runs_say,
     told_slow_clock,
     uneven_once,
@@ -55,6 +57,22 @@ def test_a_time_in_ms_from_any_origin_shows_in_the_rates_that_other_channels_tel
 @pytest.mark.parametrize(("rate", "found"), [(4.0, {"rate": "warning"}), (6.0, {})])
 def test_a_log_too_slow_for_reversals_is_worth_a_word(rate, found):
     assert said(np.arange(100) / rate) == found
+
+
+@pytest.mark.parametrize(
+    ("share", "deep", "told"),
+    [(0.1, -0.08, True), (0.01, -0.08, False), (0.1, -0.04, False), (1.0, -0.08, False)],
+)
+def test_strokes_over_centre_are_told_as_the_nodes_see_them(share, deep, told):
+    """They were plausible to `check`, and lost inputs to both nodes; throughout it is a sign, which is told as one."""
+    crane = load_crane("crane_150t")
+    strokes = np.where(np.arange(500) < 500 * share, deep, 0.6) * crane.max_displacement
+    run = Run("r", {"time": np.arange(500) * 0.02, "main.pressure_a": strokes, "main.displacement": strokes})
+    found = [each for each in reading_findings([run], crane) if each.cause == "over_centre"]
+    assert [(each.severity, each.channel) for each in found] == [("error", "main.displacement")] * told
+    for each in found:
+        assert each.sentence.startswith("r: main.displacement is over centre, to -17.2 cm^3/rev: below -10.75 cm^3/rev")
+        assert each.cause in FIRST_READINGS
 
 
 def test_a_gap_and_an_uneven_clock_are_said():

@@ -147,8 +147,9 @@ def swung(share):
             {"groups": {"active": swung(0.0), "passive": swung(0.015)}},
             {"active.displacement": 2.0, "passive.displacement": 2.0},
         ),
-        # the feedback of a group that is never at zero has another unit: a share under [cm^3/rev]
-        ({"groups": {"active": swung(0.003), "passive": swung(0.5)}}, {"active.displacement": 10.0}),
+        # a feedback of motors that are swung out reads what its zero is off by; another unit the balance shows
+        ({"groups": {"active": swung(0.003), "passive": swung(0.5)}}, {}),
+        ({"groups": {"active": swung(0.028), "passive": swung(0.5)}}, {}),
     ],
 )
 def test_what_no_machine_of_this_kind_does_counts_by_how_far_it_is_beyond(changed, beyond):

@@ -128,8 +128,12 @@ def test_a_bias_is_found_by_weighted_least_squares_beside_what_else_is_considere
     assert each.lateness[1] == pytest.approx(np.sqrt(np.linalg.inv(rows)[0, 0]))
 
 
-@pytest.mark.parametrize(("share", "std", "said"), [(0.3, 0.04, True), (0.3, 0.06, False), (0.14, 0.001, False)])
+@pytest.mark.parametrize(
+    ("share", "std", "said"),
+    [(0.3, 0.04, True), (0.3, 0.06, False), (0.14, 0.001, False), (2.5, 0.14, True), (7.7, 1.5, False)],
+)
 def test_only_what_is_surely_more_than_what_is_considered_is_said(share, std, said):
+    """The last is of a filter's first 0.18 s: the pressures were told to be late by 7.7 samples that were in time."""
     assert bool(ConsideredErrors((0.15,), late=True)._words(share, std)) is said
     assert bool(ConsideredErrors((0.15,), late=True)._words(-share, std)) is said
 

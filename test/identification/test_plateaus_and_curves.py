@@ -363,7 +363,7 @@ def test_a_curve_begins_and_ends_on_the_grid_though_means_are_rounded():
 def test_a_curve_has_the_means_of_its_plateaus_and_a_friction_below_nothing_is_said_as_that(crane):
     plateaus = [
         replace(level(sign * speed, 100.0 - 2.0 * sign), displacement=swept * CM3_PER_REV, drum_torque=1e6)
-        for sign, speed, swept in ((1, 100, 200.0), (1, 300, 204.0), (-1, 100, 212.0), (-1, 300, 216.0))
+        for sign, speed, swept in ((1, 100, 206.0), (1, 300, 207.0), (-1, 100, 209.0), (-1, 300, 210.0))
     ]
     curve = friction_curve(plateaus, crane)
     assert curve.displacement == pytest.approx(208.0 * CM3_PER_REV)
@@ -371,6 +371,30 @@ def test_a_curve_has_the_means_of_its_plateaus_and_a_friction_below_nothing_is_s
     assert curve.load_torque == pytest.approx(1e6 / 250.0 / 11.0)
     np.testing.assert_allclose(curve.friction_pressure, -2.0 * BAR)
     np.testing.assert_allclose(curve.friction_torque, -2.0 * BAR * 208.0 * CM3_PER_REV)
+
+
+def test_where_the_stroke_sets_the_torque_friction_shows_in_the_stroke(crane):
+    """At one pressure both ways the difference of the pressures is none, and so was the friction."""
+    strokes = {1.0: 130 * CM3_PER_REV, -1.0: 100 * CM3_PER_REV}
+    plateaus = [replace(level(s * speed, 200.0), displacement=strokes[s]) for s in strokes for speed in (100.0, 300.0)]
+    curve = friction_curve(plateaus, crane)
+    np.testing.assert_allclose(curve.friction_torque, 0.5 * 30 * CM3_PER_REV * 200 * BAR)
+
+
+@pytest.mark.parametrize(
+    ("shown", "said"),
+    [
+        (0.0, r"t: displacement 0 cm\^3/rev from 0 to 5 s while the winch turns: is the feedback dead"),
+        (-40.0, r"t: displacement -40 cm\^3/rev from 0 to 5 s"),
+        (2.0, r"t: displacement 2 cm\^3/rev from 0 to 5 s"),
+        (100.0, r"t: displacements of 100 and 215 cm\^3/rev in one test: give each as its own"),
+    ],
+)
+def test_a_test_without_a_displacement_or_with_several_is_refused(crane, shown, said):
+    """Divided by none, or with the mean of all: a traceback, or a model without friction."""
+    plateaus = [level(sign * speed) for sign in (1.0, -1.0) for speed in (100.0, 300.0)]
+    with pytest.raises(InputError, match=said):
+        friction_curve([*plateaus, replace(plateaus[0], displacement=shown * CM3_PER_REV)], crane)
 
 
 def test_no_test_is_nothing_to_fit():

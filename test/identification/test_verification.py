@@ -211,6 +211,22 @@ def test_a_wire_that_is_short_or_counted_from_elsewhere_does_not_ring(truth, cra
     assert pressure_check(Run("short", noisy), crane, truth).moving_rms < 1.0 * BAR
 
 
+@pytest.mark.parametrize("shown", [0.0, 0.09, -0.3])
+def test_nothing_is_predicted_for_motors_that_are_swung_out(truth, crane, shown):
+    """The pressure that a torque takes there has no bound: a second of it was an error of as much, or none at all."""
+    run = ahc_run(truth, crane)
+    strokes, pressures = run["active.displacement"].copy(), run["active.pressure_a"].copy()
+    strokes[1000:1050], pressures[1000:1050] = shown * crane.max_displacement, 25 * BAR
+    found = pressure_check(
+        replace(run, columns={**run.columns, "active.displacement": strokes, "active.pressure_a": pressures}),
+        crane, truth,
+    )  # fmt: skip
+    assert len(found.time) == len(run) - 50
+    assert found.moving_rms == pytest.approx(pressure_check(run, crane, truth).moving_rms, abs=0.1 * BAR)
+    with pytest.raises(InputError, match="ahc: active.displacement is below a tenth throughout"):
+        pressure_check(replace(run, columns={**run.columns, "active.displacement": 0.0 * strokes}), crane, truth)
+
+
 def test_a_winch_that_never_turns(truth, crane):
     run = ahc_run(truth, crane)
     still = Run("still", {**run.columns, "motor_speed": np.zeros(len(run))})
@@ -231,6 +247,8 @@ def test_the_error_while_turning_leaves_standstill_out():
     check = PressureCheck("r", "main", np.arange(4.0), speed, np.zeros(4), error)
     assert check.moving_rms == pytest.approx(np.sqrt((9.0 + 16.0) / 2.0) * BAR)
     assert check.rms == pytest.approx(np.sqrt((81.0 + 81.0 + 9.0 + 16.0) / 4.0) * BAR)
+    none = replace(check, speed=np.abs(speed) * np.array([1.0, 1.0, 0.0, 0.0]))  # what turned showed no stroke
+    assert np.isnan([none.moving_rms, none.mean_error(-1)]).all()
 
 
 def test_an_error_with_the_hook_alone_is_in_per_cent_of_the_heaviest_test(truth):

@@ -468,7 +468,9 @@ def test_it_is_urgent_that_it_waits_or_is_contradicted_and_by_what() -> None:
 def test_a_checkpoint_is_saved_on_request_where_one_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
     written: list[Any] = []
     monkeypatch.setattr(of_estimator, "write_checkpoint", lambda *what: written.append(what))
-    node = bare(EstimatorNode, own=Given(checkpoint=""), service=Given(snapshot=lambda: "content"), _unkept="full")
+    node = bare(
+        EstimatorNode, own=Given(checkpoint=""), service=Given(snapshot=lambda: "content"), _unkept="full", _kept=None
+    )
     with pytest.raises(InputError, match="parameter 'checkpoint' is empty"):
         node._save()
     node.save()  # nothing to keep

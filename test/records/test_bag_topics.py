@@ -62,6 +62,8 @@ def bag(*messages, **conventions):
         ("", ["/aft/winch/joint_states", "/aft/winch/reference"], "/aft/winch/joint_states"),
         ("fore", ["/aft/winch/joint_states", "/fore/winch/joint_states"], "/fore/winch/joint_states"),
         ("/fore/", ["/fore/aft/winch/joint_states", "/ship/fore/winch/joint_states"], "/ship/fore/winch/joint_states"),
+        ("/", ["/fore/winch/joint_states", "/winch/joint_states"], "/winch/joint_states"),
+        ("fore", ["/ship/fore/winch/joint_states", "/fore/winch/joint_states"], "/fore/winch/joint_states"),
     ],
 )
 def test_the_speed_is_on_the_topic_of_its_namespace(namespace, names, found):
@@ -70,7 +72,7 @@ def test_the_speed_is_on_the_topic_of_its_namespace(namespace, names, found):
 
 @pytest.mark.parametrize(
     ("names", "said"),
-    [(["/a/winch/joint_states", "/b/winch/joint_states"], "several winches: /a/winch/joint_states, /b/winch"),
+    [(["/a/winch/joint_states", "/b/winch/joint_states"], "several winches: /a.*; choose one with --namespace: /a, /b"),
      (["/arm/joint_states"], "no message on a topic '.../winch/joint_states'; the bag has /arm/joint_states; remap")],
 )  # fmt: skip
 def test_a_speed_that_nobody_can_tell_is_asked_for(names, said):

@@ -27,6 +27,16 @@ def test_points_are_spaced_and_in_the_units_that_people_read():
     assert telemetry.frame()["points"] == {}
 
 
+def test_estimates_and_rates_are_those_of_the_winch_that_is_watched():
+    """/diagnostics is all winches': the first that was heard was shown as whichever one was asked for."""
+    telemetry = Telemetry(namespace="/south/")
+    for name, value in (("north", "1"), ("south", "2"), ("southern", "3")):
+        telemetry.take("/diagnostics", diagnostics(f"{name}/estimator: parameters", 2, **{"C6": value, "C6_std": "1"}))
+    status = telemetry.frame()["status"]
+    assert [each["value"] for each in estimates(status)] == [2.0]
+    assert len(faults(status)) == 1
+
+
 def test_a_clock_that_is_set_back_silences_no_signal():
     telemetry = Telemetry()
     for time in (100.0, 10.0, 10.01, 10.06):

@@ -14,7 +14,7 @@ from winch_friction.replay.settings import longest_held, settings_for_rate, sett
     "text",
     [
         "compensater:\n  ros__parameters: {scale: 0.3}\n",
-        "winch: {compensator: {ros__parameters: {scale: 0.3}}}\n",
+        "winch: {compensater: {ros__parameters: {scale: 0.3}}}\n",
         "schema: winch_friction.scenario/1\nname: x\n",
     ],
 )
@@ -49,6 +49,29 @@ def test_a_parameter_file_of_one_node_will_do(tmp_path, node):
     params.write_text(f"{node}:\n  ros__parameters: {{max_age: 0.3}}\n")
     found = settings_from_file(params)
     assert 0.3 in (found.phases[0].config.max_age, found.estimator_max_age)
+
+
+TWO = """
+/**/*: {ros__parameters: {model_delay: 0.3}}
+/north/compensator: {ros__parameters: {scale: 0.6}}
+south: {compensator: {ros__parameters: {scale: 0.4}}, estimator: {ros__parameters: {max_age: 0.3}}}
+"""
+
+
+def test_a_file_of_two_winches_is_read_as_ros_reads_it(tmp_path):
+    """The last one's settings were taken for whichever winch was replayed, without a word."""
+    params = tmp_path / "params.yaml"
+    params.write_text(TWO)
+    for namespace, scale, max_age in (("north", 0.6, 0.1), ("/south/", 0.4, 0.3), ("/", 0.9, 0.1)):
+        found = settings_from_file(params, namespace)
+        assert (found.phases[0].config.scale, found.estimator_max_age) == (scale, max_age)
+        assert found.model_delay == 0.3
+        assert bag_options_of(params, namespace)["namespace"] == namespace
+    for read in (settings_from_file, bag_options_of):
+        with pytest.raises(InputError, match=r"params.yaml: parameters of several winches: /north, /south; choose one"):
+            read(params)
+    params.write_text(TWO.replace("south: ", "ship/north: "))  # told by the end of its name, as in a bag
+    assert settings_from_file(params, "ship/north").phases[0].config.scale == 0.4
 
 
 def test_age_limits_that_a_file_does_not_name_are_the_nodes(tmp_path):

@@ -10,7 +10,7 @@ import typer
 from winch_friction.cli.console import show_json, show_table
 from winch_friction.cli.inputs import show_warnings
 from winch_friction.cli.names import complete_crane, complete_model
-from winch_friction.cli.optional import OptionalPath
+from winch_friction.cli.optional import Namespace, OptionalPath
 
 PLAUSIBLE, CONTRADICTED = 0, 2
 
@@ -22,6 +22,8 @@ def command(
         str, typer.Option(help="Model file or shipped name: judges more sharply.", autocompletion=complete_model)
     ] = "",
     terms_file: Annotated[OptionalPath, typer.Option(help="Python file with friction terms of your own.")] = None,
+    params_file: Annotated[OptionalPath, typer.Option(help="ROS parameter file: joints and fields of a bag.")] = None,
+    namespace: Namespace = "",
     out: Annotated[OptionalPath, typer.Option(help="Folder for check.html and check.json.")] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Findings as JSON.")] = False,
 ) -> None:
@@ -45,13 +47,14 @@ def command(
     from winch_friction.cli.provenance import provenance_of
     from winch_friction.commissioning.commissioning import check
     from winch_friction.commissioning.other_cranes import cranes_near
+    from winch_friction.records.input_mapping import bag_options_of
     from winch_friction.records.runs import refuse_same_names
 
     load_terms(terms_file)
     paths = run_paths(runs)
     refuse_unwritable(out and out / "check.html")
     refuse_foreign(out, ("check.html", "check.json"), "check.json", "winch_friction.check/")
-    read, winch, seed = read_inputs(paths, crane, model)
+    read, winch, seed = read_inputs(paths, crane, model, bag_options_of(params_file, namespace))
     refuse_same_names(read, paths)
     near = [*paths, *([Path(crane)] if crane else [])]
     result = check(read, winch, seed, partial(cranes_near, near))

@@ -8,7 +8,7 @@ import typer
 from winch_friction.cli.console import show_json
 from winch_friction.cli.inputs import refuse_existing, refuse_input_as_output, show_warnings
 from winch_friction.cli.names import complete_crane
-from winch_friction.cli.optional import OptionalPath, Overwrite
+from winch_friction.cli.optional import Namespace, OptionalPath, Overwrite
 from winch_friction.physics.signals import GROUP_CHANNELS, SAMPLE_SCALARS, Run
 
 app = typer.Typer(help="Run files from one format to another.", add_completion=False, rich_markup_mode="rich")
@@ -23,6 +23,7 @@ def run(
         str, typer.Option(help="Crane: for drum speeds and displacement fractions.", autocompletion=complete_crane)
     ] = "",
     params_file: Annotated[OptionalPath, typer.Option(help="ROS parameter file: joints and fields of a bag.")] = None,
+    namespace: Namespace = "",
     overwrite: Overwrite = False,
     as_json: Annotated[bool, typer.Option("--json", help="Say what was written as JSON.")] = False,
 ) -> None:
@@ -39,7 +40,7 @@ def run(
     for each in out:
         refuse_input_as_output(refuse_unknown_kind(each), [source])
     refuse_existing(overwrite, *out)
-    content = read_run(source, load_crane(crane) if crane else None, **bag_options_of(params_file))
+    content = read_run(source, load_crane(crane) if crane else None, **bag_options_of(params_file, namespace))
     show_warnings(content.warnings)
     _write(content, out, as_json)
 

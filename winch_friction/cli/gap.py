@@ -25,7 +25,7 @@ from winch_friction.cli.inputs import (
     show_warnings,
 )
 from winch_friction.cli.names import complete_crane, complete_model
-from winch_friction.cli.optional import OptionalPath, OptionalPaths, Overwrite
+from winch_friction.cli.optional import Namespace, OptionalPath, OptionalPaths, Overwrite
 from winch_friction.physics.errors import InputError
 
 HELP = """Find where simulation and measurement disagree, name the missing effect, add it, show the gap shrink.
@@ -68,6 +68,7 @@ def command(
     fmu: Annotated[OptionalPath, typer.Option(help="FMU of your own simulation, to compare with.")] = None,
     fmu_map: Annotated[OptionalPath, typer.Option(help="Which run columns are which variables of the FMU.")] = None,
     params_file: Annotated[OptionalPath, typer.Option(help="ROS parameter file: joints and fields of a bag.")] = None,
+    namespace: Namespace = "",
     report: Annotated[bool, typer.Option(help="Write report.html.")] = True,
     force: Annotated[bool, typer.Option(help="Go on with data that contradict the crane; gap.json says so.")] = False,
     overwrite: Overwrite = False,
@@ -82,7 +83,7 @@ def command(
         model = model or MODEL
         blind_trials(blind, crane or load_model(model).crane, model, out, seed, as_json, overwrite)
         return
-    files = (fmu, fmu_map, params_file, overwrite)
+    files = (fmu, fmu_map, params_file, overwrite, namespace)
     content, said = run_gap(list(runs or []), crane, model, out, holdout, seed, effects, report, force, *files)
     if as_json:
         show_json(content)
@@ -170,6 +171,7 @@ def run_gap(
     fmu_map: Path | None = None,
     params_file: Path | None = None,
     overwrite: bool = False,
+    namespace: str = "",
 ) -> tuple[dict[str, Any], Collection[str]]:
     """The workflow from files to files; returns the content of gap.json, and which of its notes were warnings."""
     from winch_friction.cli.provenance import provenance_of
@@ -194,7 +196,7 @@ def run_gap(
     assumed = not (model or crane)
     model = model or _usual_model(crane, paths)
     crane = load_model(MODEL).crane if assumed else crane
-    conventions = bag_options_of(params_file) if params_file is not None else {}
+    conventions = bag_options_of(params_file, namespace) if params_file or namespace else {}
     read, loaded_crane, seed_model = read_inputs(paths, crane, model, conventions, unstated)
     warned = [*(each for run in read for each in run.warnings), *same_recordings(read)]
     show_warnings(warned)

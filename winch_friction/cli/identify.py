@@ -8,7 +8,7 @@ from typing import Annotated, Any
 import typer
 
 from winch_friction.cli.names import complete_crane, complete_model
-from winch_friction.cli.optional import OptionalPath, OptionalPaths, OptionalTexts, Overwrite
+from winch_friction.cli.optional import Namespace, OptionalPath, OptionalPaths, OptionalTexts, Overwrite
 
 app = typer.Typer(
     help="Supplier tables and logged tests become a friction model.", add_completion=False, no_args_is_help=True
@@ -132,6 +132,7 @@ def system(
     evaluations: Evaluations = 20000,
     seed: Seed = 0,
     params_file: Annotated[OptionalPath, typer.Option(help="ROS parameter file: joints and fields of a bag.")] = None,
+    namespace: Namespace = "",
     force: Force = False,
     overwrite: Overwrite = False,
     json: Json = False,
@@ -163,7 +164,7 @@ def system(
     refuse_existing(overwrite, out)
     problems = Problems()
     known, supplied = _machine(crane, motor, runs, problems)
-    tests, others = _read_tests(runs, held_out, known, bag_options_of(params_file), problems)
+    tests, others = _read_tests(runs, held_out, known, bag_options_of(params_file, namespace), problems)
     problems.say()
     refuse_copies([*tests, *others])
     forced = refuse_implausible([*tests, *others], known, force=force, near=runs)

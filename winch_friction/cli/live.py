@@ -89,7 +89,7 @@ def bag_frames(path: Path, namespace: str, rate: float, joint: str = "") -> Iter
 
     prefix = f"/{namespace.strip('/')}/" if namespace.strip("/") else "/"
     names = {topic if topic.startswith("/") else prefix + topic: topic for topic in TOPICS}
-    telemetry = Telemetry(joint)
+    telemetry = Telemetry(joint, namespace)
     with _opened(path) as reader:
         chosen = [each for each in reader.connections if each.topic in names]
         if not chosen:

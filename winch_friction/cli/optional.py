@@ -12,4 +12,5 @@ OptionalInt = Optional[int]  # noqa: UP045
 OptionalPath = Optional[Path]  # noqa: UP045
 OptionalPaths = Optional[list[Path]]  # noqa: UP045
 OptionalTexts = Optional[list[str]]  # noqa: UP045
+Namespace = Annotated[str, typer.Option(help="Which winch of a bag or --params-file; /: the one without.")]
 Overwrite = Annotated[bool, typer.Option("--overwrite", help="Replace what is there under that name.")]

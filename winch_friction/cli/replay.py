@@ -12,7 +12,7 @@ import typer
 from winch_friction.cli.console import show_json, show_table, stderr
 from winch_friction.cli.inputs import show_warnings
 from winch_friction.cli.names import complete_crane, complete_model
-from winch_friction.cli.optional import OptionalPath, OptionalTexts, Overwrite
+from winch_friction.cli.optional import Namespace, OptionalPath, OptionalTexts, Overwrite
 from winch_friction.physics.channels import beside
 
 SLACK = 2.5  # usual steps that an input may be late before it counts as lost: one lost sample is no loss
@@ -34,7 +34,7 @@ def command(
     remap: Annotated[OptionalTexts, typer.Option(help="TOPIC=NAME_IN_THE_BAG; repeatable.")] = None,
     joint: Annotated[str, typer.Option(help="Joint of the speed; none: params-file's, or winch_motor.")] = "",
     pressure_reference: Annotated[str, typer.Option(help="Pressures in the bag: gauge or absolute.")] = "",
-    namespace: Annotated[str, typer.Option(help="Which winch, when the bag has several.")] = "",
+    namespace: Namespace = "",
     force: Annotated[bool, typer.Option(help="Go on with data that contradict the crane; the result says so.")] = False,
     overwrite: Overwrite = False,
     as_json: Annotated[bool, typer.Option("--json", help="Summary as JSON.")] = False,
@@ -80,10 +80,10 @@ def command(
         refuse_unknown_kind(out)
     asked = bag_options(remap or [], joint, pressure_reference, namespace)
     _refuse_bag_options(recording, {"remap": remap, "joint": joint, "pressure-reference": pressure_reference,
-                                    "namespace": namespace})  # fmt: skip
-    options = bag_options_of(params_file) | asked
+                                    "namespace": "" if params_file else namespace})  # fmt: skip
+    options = bag_options_of(params_file, namespace) | asked
     load_terms(terms_file)
-    settings = settings_from_file(params_file) if params_file else None
+    settings = settings_from_file(params_file, namespace) if params_file else None
     problems = Problems()
     winch, seed = machine_of(crane, model, [recording], problems)
     with problems:

@@ -16,6 +16,7 @@ from winch_friction.physics.channels import display_unit
 from winch_friction.physics.errors import counted
 from winch_friction.physics.signals import FloatArray, Run, column_unit
 from winch_friction.physics.winch.crane import Crane
+from winch_friction.physics.winch.operating_point import DISPLACEMENT_MARGIN
 from winch_friction.records.unit_names import conversion_to_si
 
 SEVERITIES = ("error", "warning", "note")  # what contradicts the crane, what deserves a look, what is only said
@@ -220,16 +221,32 @@ def read_as(column: str, value: float, of_size: bool = False) -> str:
 # degC; a hydraulic oil is at the end of its viscosity above, and 40 degC are 104 degF and 313 K
 OIL = (-20.0, 95.0)
 FREEZING = 273.15  # K
-COUNTED = "counted"  # cause of layers counted from 0, which no drum has
+# causes of layers counted from 0, which no drum has, and of strokes over centre, which no model knows: these come first
+FIRST_READINGS = "counted", "over_centre"
 NEARER = 3.0  # times: a counter of the wire is right within a per cent or two, a layer's radius is 5 to 8 % larger
 
 
 def reading_findings(runs: Sequence[Run], crane: Crane) -> Iterator[Finding]:
-    """What is wrong with the layers and the oil of runs, by the crane's drum and by what oil is."""
+    """What is wrong with strokes, layers and oil of runs, by the crane's motors and drum and by what oil is."""
     for run in runs:
+        yield from _of_strokes(run, crane)
         yield from _of_layers(run, crane)
         yield from _one_layer_up(run, crane)
         yield from _of_oil(run)
+
+
+def _of_strokes(run: Run, crane: Crane) -> Iterator[Finding]:
+    lowest = -DISPLACEMENT_MARGIN * crane.max_displacement  # the nodes' own, m^3/rad
+    for name in (f"{group}.displacement" for group in run.groups if crane.max_displacement):
+        strokes = _sane(run, name)
+        beyond = float(np.mean(strokes < lowest)) if len(strokes) and strokes.max() > 0.0 else 0.0
+        if beyond > BROKEN_SHARE:
+            said = (
+                f"{run.name}: {name} is over centre, to {read_as(name, strokes.min())}: below {read_as(name, lowest)} "
+                "the nodes take it for lost, and no model tells the friction there; log its size, with pressure_a and "
+                "pressure_b exchanged meanwhile"
+            )
+            yield Finding("error", "over_centre", said, name, (run.name,), {"share": beyond})
 
 
 def _of_layers(run: Run, crane: Crane) -> Iterator[Finding]:
@@ -245,18 +262,14 @@ def _of_layers(run: Run, crane: Crane) -> Iterator[Finding]:
         said += ": 1 is the innermost; where the log counts it as 0, add 1"
     off = float(np.mean([not crane.drum.has(each) for each in layers]))
     # few cells are a counter that was not set yet
-    severity, cause = "error" if off > BROKEN_SHARE else "warning", COUNTED if from_zero else "range"
+    severity, cause = "error" if off > BROKEN_SHARE else "warning", "counted" if from_zero else "range"
     yield Finding(severity, cause, said, "wire_layer", (run.name,), {"share": off})
 
 
 def _one_layer_up(run: Run, crane: Crane) -> Iterator[Finding]:
     """A log that counts layers from 0 and never comes to the innermost: its wire moves as on the next layer."""
     layers = _sane(run, "wire_layer")
-    if (
-        not len(layers)
-        or layers.min() != layers.max()
-        or not (crane.drum.has(layers[0]) and crane.drum.has(layers[0] + 1))
-    ):
+    if len(set(layers.tolist())) != 1 or not (crane.drum.has(layers[0]) and crane.drum.has(layers[0] + 1)):
         return
     own, radii = round(float(layers[0])), np.array(crane.drum.layer_radii)
     told = ways(run, crane).get("wire_out", 0.0) * float(np.mean(radii))

@@ -11,7 +11,7 @@ from itertools import combinations
 import numpy as np
 
 from winch_friction.commissioning.channels import (
-    COUNTED,
+    FIRST_READINGS,
     SEVERITIES,
     Finding,
     cell_findings,
@@ -254,14 +254,14 @@ def diagnosed(
     readings = [*reading_findings(runs, crane)]
     findings = [
         *_named_crane(runs, crane, others),
-        *(each for each in readings if each.cause == COUNTED),
+        *(each for each in readings if each.cause in FIRST_READINGS),
         *slow,
         *simulated_findings(runs, crane.drive.hydraulic),
         *(dead_findings(usable, views) if crane.drive.hydraulic else ()),
         *(lone_units(usable) if crane.drive.hydraulic else ()),
         *(group_findings(usable, crane, fit.contradicting) if crane.drive.hydraulic else ()),
         *(() if slow or diagnosis is None else likeliest_mistake(diagnosis, crane)),
-        *(each for each in readings if each.cause != COUNTED),
+        *(each for each in readings if each.cause not in FIRST_READINGS),
         *(finding for run in runs if crane.drive.hydraulic for finding in frozen_findings(run)),
         *(finding for run in runs for finding in cell_findings(run)),
         *clock,

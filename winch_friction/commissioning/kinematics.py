@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from winch_friction.commissioning.balance import Closure, closure, static_torque, top
-from winch_friction.commissioning.view import GroupView, RunView, usable
+from winch_friction.commissioning.view import RunView, usable
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.signals import FloatArray, Run
 from winch_friction.physics.winch.crane import CURRENT, ELECTRIC, Crane
@@ -119,7 +119,9 @@ LARGEST_DISPLACEMENT = 1.06  # of the crane's largest: the feedback's error
 HEAVIEST = 1.5  # of what all motors hold at 450 bar
 RATED_TO_LIMIT = 450.0 / 300.0
 LOWEST_SUM = 8e5  # Pa: p_A + p_B of any loop in use lies above; the boost alone is several times that
-SMALLEST_DISPLACEMENT = 0.03  # of the crane's largest, at the run's largest; one group of several may be swung out
+# of the crane's largest, at the run's largest and by the group that is swung in farthest: another may be swung out, and
+# its feedback then reads what its zero is off by; where it has another unit, the torque balance does not close
+SMALLEST_DISPLACEMENT = 0.03
 ROUGHEST = 15.0  # m/s of crane tip
 STEEP = 0.1  # a ratio of e^0.1 beyond the limit costs one sigma
 MOST_BEYOND = 400.0
@@ -138,17 +140,10 @@ def excesses(view: RunView) -> dict[str, float]:
         found[f"{name}.pressure"] = max(top(group.drop) / HIGHEST, too_low)
         if view.max_displacement > 0.0:
             largest = top(group.displacement)
-            told = widest if _swung_out(group) else largest
-            too_small = SMALLEST_DISPLACEMENT * view.max_displacement / max(told, 1e-300)
+            too_small = SMALLEST_DISPLACEMENT * view.max_displacement / max(widest, 1e-300)
             too_large = largest / (LARGEST_DISPLACEMENT * view.max_displacement)
             found[f"{name}.displacement"] = max(too_small, too_large)
     return {name: ratio for name, ratio in found.items() if ratio > 1.0}
-
-
-def _swung_out(group: GroupView) -> bool:
-    """Whether a group's displacement comes to zero: its motors may be swung out while another group drives; of one that
-    is small and never zero the unit is wrong."""
-    return float(np.nanmin(group.displacement, initial=np.inf)) <= 0.0
 
 
 def range_score(view: RunView) -> float:

@@ -13,6 +13,9 @@ import numpy as np
 from winch_friction.physics.signals import FloatArray
 
 OR_ELSE = "or the model lacks an effect, which gap would name"  # a loss of its pressures may look alike
+# of the time between two samples: a lateness is told by samples that show it as sharply as what is considered for
+# nothing (`speed_delay_std`); the first tenth of a second shows what the start itself does, as up to 17 samples' time
+SHARP = 0.15
 SURE = 3.0  # standard deviations of what is found, by which it must be beyond what is considered
 
 
@@ -60,7 +63,7 @@ class ConsideredErrors:
         return {"speed_late": share, "speed_late_std": std, "lateness": self._words(share, std)}
 
     def _words(self, share: float, std: float) -> str:
-        if not (self._late and abs(share) - SURE * std > self._std[0]):  # NaN as well
+        if not (self._late and std < SHARP and abs(share) - SURE * std > self._std[0]):  # NaN as well
             return ""
         size = f"about {abs(share):.1f} of the time between two samples"
         if share > 0.0:

@@ -2,9 +2,10 @@
 
 import contextlib
 import signal
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
 from itertools import islice
-from multiprocessing import resource_tracker
+from multiprocessing import active_children, resource_tracker
+from multiprocessing.process import BaseProcess
 from typing import Any, TypeVar
 
 T = TypeVar("T")
@@ -26,8 +27,10 @@ def on_dask(
 
     with contextlib.ExitStack() as stack:
         local = {"n_workers": workers, "threads_per_worker": 1, "dashboard_address": None, "silence_logs": 40}
+        others = active_children()
         with _interrupts_held():
             cluster = address or stack.enter_context(LocalCluster(**local))
+            stack.push(_ended_at_once(others))
         client = stack.enter_context(Client(cluster, timeout=PATIENCE))
         waiting = iter(pieces)
 
@@ -40,6 +43,18 @@ def on_dask(
             future.release()
             for more in submitted(1):
                 ended.add(more)
+
+
+def _ended_at_once(others: Collection[BaseProcess]) -> Callable[..., None]:
+    """On the way out by an interrupt or an error, kill this process's workers: a piece of work in their middle was
+    waited for, up to 4.7 s, and a worker that missed its scheduler meanwhile left a traceback."""
+
+    def end(kind: type[BaseException] | None, *_: object) -> None:
+        for each in active_children() if kind else ():
+            if each not in others:
+                each.kill()
+
+    return end
 
 
 @contextlib.contextmanager

@@ -7,13 +7,17 @@ import numpy as np
 
 from winch_friction.identification.fit_data import FitData
 from winch_friction.identification.plateaus import Plateau
-from winch_friction.physics.channels import RPM
+from winch_friction.physics.channels import CM3_PER_REV, RPM
+from winch_friction.physics.corrections import LEAST_STROKE
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.signals import FloatArray
 from winch_friction.physics.winch import Crane, group_point, operating_point
 
 SPEED_STEP = 25.0 * RPM  # paper 2 eq 9
 _SAME_SPEED = 5.0 * RPM
+_ONE_SETTING = 0.02  # of the displacement; plateaus of one setting differ by less, as within one (`plateaus._changes`)
+# times: where the stroke sets the torque it is (T + F)/(T - F) hoisting over lowering, and friction a third of the load
+_WIDEST = 2.0
 
 
 @dataclass(frozen=True)
@@ -48,12 +52,14 @@ class FrictionCurve:
 def friction_curve(plateaus: Sequence[Plateau], crane: Crane, group: str = "main") -> FrictionCurve:
     """The friction curve of one test from its plateaus.
 
-    Raises `InputError` when a direction is missing, when one has a single plateau, or when their speeds do not overlap.
+    Raises `InputError` when a direction is missing, when one has a single plateau, when their speeds do not overlap, or
+    when they show no displacement, or several.
     """
     test = plateaus[0].run if plateaus else "test"
     motors = crane.motor_count(group)
     drum_torque = float(np.mean([each.drum_torque for each in plateaus])) if plateaus else 0.0
-    alike = [_at_load(each, drum_torque, crane.gear_ratio * motors) for each in plateaus]
+    displacement = _displacement(plateaus, crane)
+    alike = [_at_load(_at_stroke(p, displacement), drum_torque, crane.gear_ratio * motors) for p in plateaus]
     same, step = _SAME_SPEED * crane.speed_scale, SPEED_STEP * crane.speed_scale
     up, down = _branch(alike, +1, test, same), _branch(alike, -1, test, same)
     grid = _common_grid(up[0], down[0], test, step)
@@ -62,11 +68,36 @@ def friction_curve(plateaus: Sequence[Plateau], crane: Crane, group: str = "main
         speed=grid,
         pressure_up=np.interp(grid, *up),
         pressure_down=np.interp(grid, *down),
-        displacement=float(np.mean([each.displacement for each in plateaus])),
+        displacement=displacement,
         drum_torque=drum_torque,
         motors=motors,
         load_torque=drum_torque / (crane.gear_ratio * motors),
     )
+
+
+def _displacement(plateaus: Sequence[Plateau], crane: Crane) -> float:
+    """Their mean, m^3/rad per motor; `InputError` where motors that turn the winch seem to be swung out, or a test has
+    several settings: the pressure would be divided by nothing, or multiplied by a mean that it was never at."""
+    least = LEAST_STROKE * crane.max_displacement
+    for each in plateaus:
+        if not each.displacement > least:
+            raise InputError(
+                f"{each.run}: displacement {each.displacement / CM3_PER_REV:.3g} cm^3/rev from {each.start:.6g} to "
+                f"{each.end:.6g} s while the winch turns: is the feedback dead? leave this part out"
+            )
+    found = [each.displacement for each in plateaus]
+    if found and max(found) > _WIDEST * min(found):
+        shown = " and ".join(f"{each / CM3_PER_REV:.3g}" for each in (min(found), max(found)))
+        raise InputError(f"{plateaus[0].run}: displacements of {shown} cm^3/rev in one test: give each as its own")
+    return float(np.mean(found)) if found else 0.0
+
+
+def _at_stroke(plateau: Plateau, mean: float) -> Plateau:
+    """The plateau as its torque would show at the test's mean displacement: where the stroke sets the torque, friction
+    shows in the stroke, and none in the pressures."""
+    if abs(plateau.displacement - mean) <= _ONE_SETTING * mean:
+        return plateau
+    return replace(plateau, pressure_drop=plateau.pressure_drop * plateau.displacement / mean, displacement=mean)
 
 
 def _at_load(plateau: Plateau, mean: float, shafts: float) -> Plateau:

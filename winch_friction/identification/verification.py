@@ -18,7 +18,7 @@ from winch_friction.physics.friction.term import needed
 from winch_friction.physics.signals import FloatArray, Run
 from winch_friction.physics.winch import Crane, group_point, operating_point
 from winch_friction.physics.winch.crane import held, run_drum_torque, run_rope_radius
-from winch_friction.physics.winch.operating_point import CHANNEL_SIGNALS
+from winch_friction.physics.winch.operating_point import CHANNEL_SIGNALS, LEAST_DISPLACEMENT
 
 LOW_SPEED = 250.0 * RPM  # paper 2: within 1 % of nominal above it
 _HOOK_ONLY = 0.1  # of the heaviest test's torque
@@ -27,6 +27,7 @@ _WIRE_DAMPING = 1.5e5  # N s/m, load on rope, sheaves and boom: engineering judg
 _HOLE = 3.0  # s; half a quick wave: a straight line over more says nothing of the motion
 _LOST = 1.5  # samples; where two rows are further apart than this, some between them are lost
 _LEAST_SAMPLES = 10  # of a piece between holes
+_LEAST_STROKE = 0.1  # of the largest; below, the pressure that a torque takes has no bound (the compensator's as well)
 _STICKING = 0.5  # rad/s of the smoothed speed; a winch that creeps faster has the friction of its direction
 STANDSTILL = 1.0  # rad/s, three encoder counts per scan; below it friction lies anywhere within the break-away level
 
@@ -97,17 +98,23 @@ class PressureCheck:
     @property
     def rms(self) -> float:
         """Root mean square error over the whole run, Pa."""
-        return float(np.sqrt(np.mean((self.predicted - self.measured) ** 2)))
+        return _root_mean_square(self.predicted - self.measured)
 
     @property
     def moving_rms(self) -> float:
         """Root mean square error while the winch turns, Pa: at standstill friction is undetermined."""
         moving = np.abs(self.speed) > STANDSTILL * self.speed_scale
-        return float(np.sqrt(np.mean((self.predicted - self.measured)[moving] ** 2)))
+        return _root_mean_square((self.predicted - self.measured)[moving])
 
     def mean_error(self, direction: int) -> float:
-        """Mean of predicted minus measured while hoisting (+1) or lowering (-1), Pa."""
-        return float(np.mean((self.predicted - self.measured)[self.speed * direction > 10 * RPM * self.speed_scale]))
+        """Mean of predicted minus measured while hoisting (+1) or lowering (-1), Pa; NaN where nothing shows it."""
+        shown = (self.predicted - self.measured)[self.speed * direction > 10 * RPM * self.speed_scale]
+        return float(np.mean(shown)) if len(shown) else np.nan
+
+
+def _root_mean_square(errors: FloatArray) -> float:
+    """NaN of none."""
+    return float(np.sqrt(np.mean(errors**2))) if len(errors) else np.nan
 
 
 def pressure_check(run: Run, crane: Crane, model: FrictionModel, displacement_scale: float = 0.0) -> PressureCheck:
@@ -116,8 +123,9 @@ def pressure_check(run: Run, crane: Crane, model: FrictionModel, displacement_sc
     The driving group is `active` where there is one: it carries all the friction, the passive motors' too. While the
     winch sticks, friction is taken to turn over evenly from one side to the other. `displacement_scale` is the
     relative error of the displacement feedback that a joint fit found for these motors. A record with long holes
-    is predicted piece by piece. Raises `InputError` for a missing column, NaN, also in what the model's terms read, and
-    for a winch that never turns.
+    is predicted piece by piece; where the driving motors are swung below a tenth, nothing is. Raises `InputError` for
+    a missing column, NaN, also in what the model's terms read, for a winch that never turns, and for motors that are
+    never above that.
     """
     refuse_unusable(run)
     refuse_gaps(run, needed(model.terms))
@@ -131,7 +139,12 @@ def pressure_check(run: Run, crane: Crane, model: FrictionModel, displacement_sc
         np.concatenate([each[name] for each in pieces]) for name in ("time", "motor_speed", *drop)
     )
     predicted = np.concatenate([_predicted(piece, crane, model, group) for piece in pieces])
-    return PressureCheck(run.name, group, time, speed, high - low, predicted, crane.speed_scale)
+    told = np.isfinite(predicted)
+    if not told.any():
+        raise InputError(f"{run.name}: {group}.displacement is below a tenth throughout: no pressure can be predicted")
+    return PressureCheck(
+        run.name, group, time[told], speed[told], (high - low)[told], predicted[told], crane.speed_scale
+    )
 
 
 def refuse_unusable(run: Run) -> None:
@@ -172,13 +185,16 @@ def _predicted(piece: Run, crane: Crane, model: FrictionModel, group: str) -> Fl
     drum_torque = run_drum_torque(run, crane)
     inertia, acceleration = inertia_torque(run, crane)
     held = drum_torque / crane.gear_ratio + inertia - _other_groups(run, crane, group, drop)
-    capacity = crane.motor_count(group) * run[f"{group}.displacement"]
+    stroke = run[f"{group}.displacement"]
+    floor = _LEAST_STROKE * (crane.max_displacement or float(stroke.max()))
+    capacity = crane.motor_count(group) * np.maximum(stroke, floor)
     predicted = held / capacity
     moving = _turns(run, crane)
     for _ in range(4 if moving.any() else 0):  # the driving group's friction depends on its own pressure, weakly
         points = _points(run, crane, {**drop, group: predicted}, drum_torque, acceleration)
         friction = np.asarray(model.torque(points))
         predicted = (held + _through_standstill(run.time, friction, moving)) / capacity
+    predicted = np.where(stroke >= floor, predicted, np.nan)
     return predicted if run is piece else np.interp(piece.time, run.time, predicted)
 
 
@@ -207,7 +223,8 @@ def _points(
     lower = {name: np.minimum(run[f"{name}.pressure_a"], run[f"{name}.pressure_b"]) for name in drop}
     groups = [
         group_point(
-            np.full(len(run), float(crane.motor_count(name))), p, run[f"{name}.displacement"],
+            np.full(len(run), float(crane.motor_count(name))), p,
+            np.maximum(run[f"{name}.displacement"], LEAST_DISPLACEMENT),
             np.abs(p) + 2.0 * lower[name],
         )
         for name, p in drop.items()

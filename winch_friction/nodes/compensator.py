@@ -15,6 +15,7 @@ from winch_friction.compensation.config import check_on_crane
 from winch_friction.nodes.base import ERROR, OK, WARN, Health, WinchNode
 from winch_friction.nodes.beside import Beside, read_terms
 from winch_friction.nodes.inputs import ROS, Inputs, pressure_message
+from winch_friction.nodes.options import NodeOptions
 from winch_friction.nodes.parameters import OptionParameters
 from winch_friction.nodes.qos import LATCHED, OUTPUT, fresh, overridable
 from winch_friction.nodes.rates import InputHealth
@@ -51,6 +52,8 @@ class CompensatorNodeOptions:
 
 class CompensatorNode(WinchNode):
     """Publishes `~/friction_torque` and `~/pressure_feedforward` at every speed message."""
+
+    executable, told_by = "compensator", (NodeOptions, CompensatorNodeOptions, CompensatorConfig)
 
     def __init__(self, **node_arguments: Any) -> None:
         fixed = (

@@ -13,6 +13,7 @@ from winch_friction.compensation.config import OLDEST_INPUT
 from winch_friction.estimation import Estimate, EstimatorConfig
 from winch_friction.nodes.base import ERROR, OK, URGENT_PERIOD, WARN, Health, WinchNode
 from winch_friction.nodes.inputs import ROS, Inputs
+from winch_friction.nodes.options import NodeOptions
 from winch_friction.nodes.parameters import OptionParameters
 from winch_friction.nodes.qos import LATCHED, OUTPUT, overridable
 from winch_friction.nodes.rates import InputHealth
@@ -24,7 +25,7 @@ from winch_friction.online.readiness import LEARNING, make_ready
 from winch_friction.physics.errors import InputError, check, option
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.winch.crane import Crane
-from winch_friction.records.checkpoint import read_checkpoint, set_aside, write_checkpoint
+from winch_friction.records.checkpoint import file_there, read_checkpoint, set_aside, write_checkpoint
 from winch_friction.records.model_file import model_to_text
 from winch_friction.records.topics import joint_state, stamp_header
 
@@ -51,10 +52,13 @@ class EstimatorNodeOptions:
 class EstimatorNode(WinchNode):
     """Learns at every speed message; publishes `friction_model` and `~/friction_torque`."""
 
+    executable, told_by = "estimator", (NodeOptions, EstimatorNodeOptions, EstimatorConfig)
+
     def __init__(self, **node_arguments: Any) -> None:
         self._config = OptionParameters(EstimatorConfig, fixed=EstimatorConfig.__dataclass_fields__)
         self._own = OptionParameters(EstimatorNodeOptions, fixed=("checkpoint",))
         self._unkept = ""  # why the last checkpoint was not written
+        self._kept: tuple[int, int] | None = None  # the file that this estimator has read or written
         self._wanted = True  # whoever switched it off has to switch it on, whatever transitions come between
         super().__init__("estimator", self._config, self._own, **node_arguments)
 
@@ -103,12 +107,21 @@ class EstimatorNode(WinchNode):
         if not hasattr(self, "service") or not self.own.checkpoint:
             return
         try:
-            write_checkpoint(self.own.checkpoint, self.service.snapshot())
-            self._unkept = ""
+            self._keep()
         except (InputError, OSError) as error:
             before, self._unkept = self._unkept, _unkept(self.own.checkpoint, error)
             if self._unkept != before:  # each try would be one more line on a disk that may be full
                 self.get_logger().error(self._unkept)
+
+    def _keep(self) -> None:
+        """Not over what somebody else keeps there: of two winches with one file each would begin as the other ended."""
+        path = self.own.checkpoint
+        if file_there(path) not in (None, self._kept):
+            raise InputError(
+                f"{path}: not what this estimator wrote there; does another one keep its own? Name a file for each"
+            )
+        write_checkpoint(path, self.service.snapshot())
+        self._kept, self._unkept = file_there(path), ""
 
     # -- callbacks
     def _answer(self, estimate: Estimate) -> None:
@@ -137,8 +150,7 @@ class EstimatorNode(WinchNode):
     def _save(self) -> str:
         if not self.own.checkpoint:
             raise InputError("parameter 'checkpoint' is empty: name a file")
-        write_checkpoint(self.own.checkpoint, self.service.snapshot())
-        self._unkept = ""
+        self._keep()
         return f"saved to {self.own.checkpoint}"
 
     # -- outputs
@@ -169,6 +181,7 @@ class EstimatorNode(WinchNode):
         except InputError as error:
             kept = set_aside(self.own.checkpoint)  # it may be another crane's, or no checkpoint at all
             self.get_logger().warning(f"starts from the seed: {error}; the file is kept as {kept}")
+        self._kept = file_there(self.own.checkpoint)
 
     def apply_settings(self) -> None:
         """Take over the periods."""

@@ -13,6 +13,7 @@ from rclpy.utilities import get_default_context
 from winch_friction.nodes.console import Console
 from winch_friction.nodes.loop import Loop
 from winch_friction.nodes.parameters import overruled
+from winch_friction.nodes.usage import HELP, refuse_own_arguments, usage
 from winch_friction.physics.errors import InputError
 
 BAD_INPUT = 2
@@ -33,8 +34,14 @@ class Ending:
         self.asked = True
 
 
-def run(make: Callable[[], Any], arguments: Sequence[str] | None = None) -> int:
-    """Make the node, start it as its `autostart` says, and spin until it is told to end; printing waits for nobody."""
+def run(make: Any, arguments: Sequence[str] | None = None) -> int:
+    """Make the node, start it as its `autostart` says, and spin until it is told to end; printing waits for nobody.
+
+    `arguments` are those of a command line, its program first; `sys.argv` without any.
+    """
+    if set(HELP) & set((sys.argv if arguments is None else arguments)[1:]):
+        print(usage(make.executable, (make.__doc__ or "").partition("\n")[0], make.told_by))
+        return 0
     ending, console = Ending(), Console()
     try:
         return _run(make, arguments, ending)
@@ -45,6 +52,7 @@ def run(make: Callable[[], Any], arguments: Sequence[str] | None = None) -> int:
 def _run(make: Callable[[], Any], arguments: Sequence[str] | None, ending: Ending) -> int:
     try:
         given = None if arguments is None else list(arguments)
+        refuse_own_arguments((sys.argv if given is None else given)[1:])
         _begin(given)
         node = make()
         node.told_to_end = lambda: ending.asked
@@ -108,7 +116,10 @@ def _spin(node: Any, ending: Ending) -> int:
 
 
 def _refuse(error: Exception) -> int:
-    for each in getattr(error, "problems", (str(error),)):
+    said = str(error).partition(", at /")[0]  # the line of rcl's source
+    if type(error).__name__ == "UnknownROSArgsError":  # of rclpy's compiled part; it says a list
+        said = f"{said.strip('[]')}: no argument of ROS; --help says which there are"
+    for each in getattr(error, "problems", (said,)):
         print(f"error: {' '.join(each.split())}", file=sys.stderr)
     rclpy.try_shutdown()
     return BAD_INPUT

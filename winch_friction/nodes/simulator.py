@@ -12,6 +12,7 @@ from std_msgs.msg import Float64
 
 from winch_friction.nodes.base import OK, WARN, Health, WinchNode
 from winch_friction.nodes.inputs import ROS, clock_message, message_type
+from winch_friction.nodes.options import NodeOptions
 from winch_friction.nodes.parameters import OptionParameters
 from winch_friction.nodes.qos import LATCHED, OUTPUT, fresh, overridable
 from winch_friction.nodes.run import run
@@ -70,6 +71,8 @@ class SimulatorNode(WinchNode):
     Sea, plant and lockstep are those of the parameters at the last `configure`: one process sails one scenario after
     the other.
     """
+
+    executable, told_by = "simulator", (NodeOptions, SimulatorNodeOptions)
 
     def __init__(self, **node_arguments: Any) -> None:
         self._own = OptionParameters(SimulatorNodeOptions, fixed=("publish_clock",))

@@ -43,7 +43,7 @@ def main() -> int:
     if options.raw:
         Raw(node)
     else:
-        _frames(node, options.joint)
+        _frames(node, options.joint, options.namespace)
     node.create_timer(LOOK_AROUND, partial(_orphaned, options.reader))
     executor = SingleThreadedExecutor()
     executor.add_node(node)
@@ -63,8 +63,8 @@ def _orphaned(reader: int) -> None:
         raise KeyboardInterrupt
 
 
-def _frames(node: Node, joint: str) -> None:
-    telemetry = Telemetry(joint)
+def _frames(node: Node, joint: str, namespace: str) -> None:
+    telemetry = Telemetry(joint, namespace)
     for topic, type_name in TOPICS.items():
         node.create_subscription(
             message_type(type_name), topic, partial(telemetry.take, topic), qos_profile_sensor_data

@@ -199,12 +199,16 @@ def _matched(path: Path, reader: Any, namespace: str, remap: dict[str, str]) -> 
 
 
 def _speed_topic(path: Path, names: list[str], namespace: str) -> str:
-    ending = f"/{namespace.strip('/')}/winch/joint_states".replace("//", "/")
+    ending = f"/{namespace.strip('/')}/{SPEED_TOPIC}".replace("//", "/")
     found = [name for name in names if name.endswith(ending)]
+    if namespace and ending in found:  # '/': the one without; a namespace within another is another winch's
+        return ending
     if len(found) == 1:
         return found[0]
     if found:
-        raise InputError(f"{path}: several winches: {', '.join(found)}; choose one by its namespace")
+        spaces = ", ".join(each.removesuffix(SPEED_TOPIC).rstrip("/") or "/" for each in found)
+        way = f"choose one with --namespace: {spaces}; where a verb has none, 'convert run' makes a run file of one"
+        raise InputError(f"{path}: several winches: {', '.join(found)}; {way}")
     raise InputError(
         f"{path}: no message on a topic '...{ending}'; the bag has {', '.join(names)}; remap winch/joint_states to the "
         "topic of the winch's speed"

@@ -23,6 +23,15 @@ def write_checkpoint(path: Path | str, snapshot: Mapping[str, Any]) -> Path:
     return write_text(Path(path), json.dumps(content, indent=1, allow_nan=False))
 
 
+def file_there(path: Path | str) -> tuple[int, int] | None:
+    """Which file stands there: another one in its place has another number and time; None where there is none."""
+    try:
+        found = Path(path).stat()
+    except OSError:
+        return None
+    return found.st_ino, found.st_mtime_ns
+
+
 def read_checkpoint(path: Path | str) -> dict[str, Any] | None:
     """The snapshot, or None when there is no file yet; raises `InputError` for what is not a whole checkpoint."""
     path = Path(path)

@@ -75,7 +75,7 @@ class Relay:
         self._foxglove, self._context = foxglove_sdk(), context
         self._prefix = f"/{namespace.strip('/')}/" if namespace.strip("/") else "/"
         self._contract = {t if t.startswith("/") else self._prefix + t: t for t in TOPICS}
-        self._telemetry = Telemetry()
+        self._telemetry = Telemetry(namespace=namespace)
         self.passed: dict[str, str] = {}  # topic -> why it is not shown
         self._channels: dict[str, Any] = {}
         for topic, schema in OWN_CHANNELS.items():

@@ -28,11 +28,13 @@ SPACING = 0.05  # s between the points of a signal: 20 Hz is more than an eye fo
 class Telemetry:
     """Takes messages as they come, gives frames.
 
-    `joint` carries the speed; '' stands for the motor's usual name, else the first there is, and that is said.
+    `joint` carries the speed; '' stands for the motor's usual name, else the first there is, and that is said. Of the
+    diagnostics, which all winches share, those of the nodes in `namespace` are taken, without one all.
     """
 
-    def __init__(self, joint: str = "") -> None:
+    def __init__(self, joint: str = "", namespace: str = "") -> None:
         self._joint, self._notes = joint, dict[str, str]()
+        self._space = f"{namespace.strip('/')}/" if namespace.strip("/") else ""
         self._points: dict[str, list[list[float]]] = {name: [] for name in SIGNALS}
         self._last: dict[str, float] = {}
         self._status: dict[str, dict[str, Any]] = {}
@@ -41,7 +43,7 @@ class Telemetry:
     def take(self, topic: str, message: Any, receipt: float = float("nan")) -> None:
         """One message of a topic of `TOPICS`, from rclpy or from a bag; `receipt` s dates one without a stamp."""
         if topic == "/diagnostics":
-            for each in message.status:
+            for each in (s for s in message.status if s.name.startswith(self._space)):
                 self._status[each.name] = {
                     "level": each.level[0] if isinstance(each.level, bytes) else int(each.level),
                     "message": each.message,

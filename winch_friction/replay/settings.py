@@ -86,14 +86,15 @@ def _phase(content: Mapping[str, Any], index: int, where: str) -> Phase:
     )
 
 
-def settings_from_file(path: Path) -> ReplaySettings:
-    """The nodes' ROS parameter file (config/nodes/*.yaml); what belongs to the nodes alone is passed over.
+def settings_from_file(path: Path, namespace: str = "") -> ReplaySettings:
+    """The nodes' ROS parameter file (config/nodes/*.yaml), of several winches' that in `namespace`; what belongs to the
+    nodes alone is passed over.
 
     Terms of a `terms_file` are registered, so read the settings before the models.
     """
     content = read_yaml(path)
     refuse_without_nodes(content, str(path))
-    compensator, estimator = (parameters_of(content, node, str(path)) for node in NODES)
+    compensator, estimator = (parameters_of(content, node, str(path), namespace) for node in NODES)
     for each in (compensator, estimator):
         if terms_file := each.get("terms_file"):
             load_file(terms_file)

@@ -10,6 +10,7 @@ BEGIN = """
 import os, signal, subprocess, sys
 from multiprocessing import resource_tracker
 from winch_friction.fleet.schedule import _interrupts_held
+signal.signal(signal.SIGINT, signal.default_int_handler)  # ignored in what a shell starts in the background
 ASK = "import signal; print(signal.SIGINT in signal.pthread_sigmask(signal.SIG_BLOCK, ()), flush=True)"
 try:
     with _interrupts_held():

@@ -308,10 +308,10 @@ def test_a_node_is_ended_whatever_became_of_it(
     monkeypatch.setattr(run, "overruled", lambda node, given: [f"no effect: {' '.join(given)}"])
     monkeypatch.setattr(run, "_start", lambda *of: library.calls.append("start") or started)
     monkeypatch.setattr(run, "_spin", lambda *of: library.calls.append("spin") or spun)
-    assert run._run(lambda: node, ("a", "b"), ending) == status
+    assert run._run(lambda: node, ("a", "--ros-args"), ending) == status
     assert library.calls == [
-        ["a", "b"],
-        "no effect: a b",
+        ["a", "--ros-args"],
+        "no effect: a --ros-args",
         "start",
         *([] if started else ["spin"]),
         "end",

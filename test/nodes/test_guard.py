@@ -338,6 +338,6 @@ def test_a_node_that_cannot_be_made_is_one_line_unless_that_is_a_defect(
 
     if status is None:
         with pytest.raises(ZeroDivisionError):
-            run._run(make, None, SimpleNamespace(asked=False))
+            run._run(make, ("node",), SimpleNamespace(asked=False))
     else:
-        assert run._run(make, None, SimpleNamespace(asked=False)) == status
+        assert run._run(make, ("node",), SimpleNamespace(asked=False)) == status

@@ -195,27 +195,34 @@ def test_levels_stand_where_they_are_load_cells_and_bring_all_runs_to_their_floo
     monkeypatch.setattr(again, "search_runs", lambda study, given: asked.extend(study.split.runs))
     monkeypatch.setattr(again, "_of_load_cells", lambda off, prepared: of_cells)
     monkeypatch.setattr(again, "_own_levels", lambda search: 1.1)
-    given = meet([lifted(100.0, "hook_load")], CRANE, BARE)
-    study = Study(Split(given.runs, (), ()), CRANE, GapOptions(), None)
+    study, given = several(7)
     before = replace(Trial(*[None] * 4), search=SimpleNamespace(given=given))
     other, found = again.by_levels(study, before)
-    assert [COURSE in run and "hook_load" not in run for run in asked] == [True]
+    assert [(COURSE in run, "hook_load" in run) for run in asked] == [(True, False)] * 6 + [(False, True)]
     assert (found is not before) == (other is not study) == taken
     if taken:
         assert "+0.5 to +0.5 % of the load" in found.levels
         assert COURSE in other.split.runs[0]
 
 
+def several(count):
+    """So many runs, of which the last one only lowers."""
+    runs = [replace(lifted(100.0, "hook_load"), name=f"run_{k}") for k in range(count)]
+    given = meet(runs, CRANE, BARE)
+    last = replace(given.prepared[-1], direction=-np.abs(given.prepared[-1].direction))
+    given = replace(given, prepared=(*given.prepared[:-1], last))
+    return Study(Split(given.runs, (), ()), CRANE, GapOptions(), None), given
+
+
 def test_levels_are_not_asked_of_a_simulation_or_of_a_load_that_the_model_corrects(monkeypatch):
     monkeypatch.setattr(again, "search_runs", lambda *_: pytest.fail("asked"))
-    run = lifted(100.0, "hook_load")
+    study, given = several(7)
     tare = replace(BARE, corrections=(Correction("tare_load", 50.0),))
-    simulated = replace(run, metadata={again.REFERENCE: "known"})
-    for own, model in ((simulated, BARE), (run, tare)):
-        given = SimpleNamespace(model=model, prepared=meet([run], CRANE, BARE).prepared)
-        study = Study(Split((own,), (), ()), CRANE, GapOptions(), None)
-        before = SimpleNamespace(search=SimpleNamespace(given=given))
-        assert again.by_levels(study, before) == (study, before)
+    simulated = [replace(run, metadata={again.REFERENCE: "known"}) for run in study.split.runs]
+    for runs, model in ((simulated, BARE), (study.split.runs, tare)):
+        own = replace(study, split=replace(study.split, runs=runs))
+        before = SimpleNamespace(search=SimpleNamespace(given=replace(given, model=model)))
+        assert again.by_levels(own, before) == (own, before)
 
 
 @pytest.mark.parametrize(("level", "friction", "found"), [(0.0, 9.0, 0.0), (2.0, 9.0, 2.0), (-2.0, 0.0, 2.0)])
@@ -231,11 +238,12 @@ def test_levels_of_runs_act_one_way_whatever_the_motion(level, friction, found):
     assert again._own_levels(SimpleNamespace(cross=cross, explanation="base")) == pytest.approx(found)
 
 
-def test_levels_below_the_noise_are_not_asked(monkeypatch):
+@pytest.mark.parametrize(("count", "levels"), [(7, 0.49), (6, 9.0)])
+def test_levels_are_not_asked_where_they_are_small_or_of_few_runs(monkeypatch, count, levels):
+    """What takes each of a few runs by itself takes whatever is another in each."""
     monkeypatch.setattr(again, "search_runs", lambda *_: pytest.fail("asked"))
-    monkeypatch.setattr(again, "_own_levels", lambda search: 0.99)
-    given = meet([lifted(100.0, "hook_load")], CRANE, BARE)
-    study = Study(Split(given.runs, (), ()), CRANE, GapOptions(), None)
+    monkeypatch.setattr(again, "_own_levels", lambda search: levels)
+    study, given = several(count)
     before = SimpleNamespace(search=SimpleNamespace(given=given))
     assert again.by_levels(study, before) == (study, before)
 

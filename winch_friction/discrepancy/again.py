@@ -26,6 +26,7 @@ from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.physics.signals import Run
 
 LEAST_LOAD = 1.0  # kg, of which a share is told
+SMALL_LEVELS = 0.5  # noises: less raises what is left by an eighth at most, and is not what keeps runs off their floor
 LEAST_EACH_WAY = 0.05  # of a run's samples, hoisting and lowering: of one way alone nobody tells a load from friction
 
 
@@ -141,24 +142,32 @@ def _locking(split: Split, showing: Sequence[str], kept: Sequence[str]) -> Split
 
 def by_levels(study: Study, trial: Trial) -> tuple[Study, Trial]:
     """What nothing explains, once more with load cells that tell the course of a load but not its level, which is what
-    closes each run's balance. Study and trial as they are unless the locked runs are brought to their floor, and the
-    others near theirs, by levels that load cells are off by: small, another in each run, and of no signal.
+    closes each run's balance (a run of one way does not tell it: there the cell is believed). Study and trial as they
+    are unless the locked runs are brought to their floor, and the others near theirs, by levels that load cells are off
+    by: small, another in each run, and of no signal.
     """
     given, runs = trial.search.given, study.split.runs
+    pairs = [pair for pair in zip(runs, given.prepared, strict=True) if _levels_show(*pair)]
     corrected = any("hook_load" in each.declared.channels for each in given.model.corrections)
-    if corrected or REFERENCE in runs[0].metadata or not all(map(_levels_show, runs, given.prepared)):
+    if corrected or REFERENCE in runs[0].metadata or len(pairs) < LIMITS.fewest_levels:
         return study, trial
-    if _own_levels(trial.search) < 1.0:  # below the noise they are not what keeps the runs above their floor
+    if _own_levels(trial.search) < SMALL_LEVELS:
         return study, trial
-    courses = tuple(replace(run, columns={COURSE if k == "hook_load" else k: v for k, v in run.columns.items()})
-                    for run in runs)  # fmt: skip
+    cells = {run.name: float(np.nanmedian(run["hook_load"])) for run, _ in pairs}
+    courses = tuple(_untold(run) if run.name in cells else run for run in runs)
     other = replace(study, split=replace(study.split, runs=courses))
     proven = standing(other, search_runs(other, meet(courses, study.crane, given.model)))
     if proven.search.verdict.kind == UNEXPLAINED or not at_the_floor(proven.holdout) or far_off(proven.train):
         return study, trial
     loads = loads_by_balance(courses, study.crane, read_back(proven.repaired.model))
-    off = np.array([float(np.nanmedian(run["hook_load"])) / max(loads[run.name], LEAST_LOAD) - 1.0 for run in runs])
-    return (other, replace(proven, levels=_said(off))) if _of_load_cells(off, given.prepared) else (study, trial)
+    off = np.array([cell / max(loads[name], LEAST_LOAD) - 1.0 for name, cell in cells.items()])
+    of_cells = _of_load_cells(off, [prepared for _, prepared in pairs])
+    return (other, replace(proven, levels=_said(off))) if of_cells else (study, trial)
+
+
+def _untold(run: Run) -> Run:
+    """The same run, whose load cell tells the course of its load alone."""
+    return replace(run, columns={COURSE if k == "hook_load" else k: v for k, v in run.columns.items()})
 
 
 def _said(off: FloatArray) -> str:

@@ -25,7 +25,8 @@ LAW = SimpleNamespace(sentence="friction in proportion to wire out, 0.12 N*m/m; 
 
 def result(verdict, **more):
     base = {"effects": [], "depends": (SimpleNamespace(signal="wire_out"),), "refused": "why", "proposals": (),
-            "next_experiment": None, "adequacy": (), "model": SimpleNamespace(corrections=(), terms=())}  # fmt: skip
+            "next_experiment": None, "adequacy": (), "levels": "",
+            "model": SimpleNamespace(corrections=(), terms=())}  # fmt: skip
     return SimpleNamespace(verdict=verdict, **(base | more))
 
 
@@ -48,6 +49,13 @@ def test_a_proposed_law_is_part_of_the_decision_and_of_what_to_do(count, others)
     said = " ".join(next_steps(found))
     assert "--model proposal_1.yaml --terms-file proposal_1.py" in said
     assert "declare a term" not in said
+
+
+@pytest.mark.parametrize(("levels", "steps"), [
+    ("", ["Nothing needs to be done: keep the model."]), ("the cell is off", ["Keep the model.", "the cell is off."]),
+])  # fmt: skip
+def test_where_nothing_is_missing_the_model_is_kept_and_a_load_cell_mended(levels, steps):
+    assert next_steps(result("nothing_missing", levels=levels)) == steps
 
 
 def test_without_a_law_the_user_looks_and_declares_one():

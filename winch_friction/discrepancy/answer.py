@@ -154,6 +154,7 @@ class GapResult:
     next_experiment: Mapping[str, Any] | None = None
     next_scenario: str = ""  # its file's text
     notes: Sequence[str] = field(default_factory=tuple)
+    levels: str = ""  # the one of them on load cells whose levels are not believed
     seed_refuted: Sequence[Any] = field(default_factory=tuple)  # the seed's uncertainty, where the data refute it
     proposals: Sequence[Any] = field(default_factory=tuple)  # laws for what has no name, the simplest first
     adequacy: tuple[Check, ...] = ()

@@ -172,7 +172,7 @@ def assemble(study: Study, trial: Trial) -> GapResult:
     return GapResult(
         verdict=kind, refused=verdict.refused, effects=_effects(search, found, repaired, tied),
         unit=given.crane.drive.unit, train=trial.train, holdout=trial.holdout, seed_model=given.model,
-        depends=named(search.left) if verdict.kind == UNEXPLAINED else (),
+        depends=named(search.left) if verdict.kind == UNEXPLAINED else (), levels=trial.levels,
         unexplained_share=unexplained_share(cross, selection, verdict), considered=_in_the_end(selection),
         next_experiment=experiment.content() if experiment else None, untestable=search.untestable,
         next_scenario=experiment.text if experiment else "", model=_concluded(repaired.model, given.model, kind),

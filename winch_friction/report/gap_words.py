@@ -194,7 +194,8 @@ def next_steps(result: "GapResult") -> list[str]:
     if result.verdict == "unexplained":
         steps += _after_no_name(result)
     if result.verdict == "nothing_missing":
-        steps.append("Nothing needs to be done: keep the model.")
+        steps.append("Keep the model." if result.levels else "Nothing needs to be done: keep the model.")
+    steps += [f"{result.levels}."] if result.levels else []
     return steps
 
 

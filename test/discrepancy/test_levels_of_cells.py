@@ -38,7 +38,11 @@ def weighed_wrong(runs, off=OFF):
 
 
 def told(result):
-    return [note for note in result.notes if note.startswith("hook_load is off by another amount in each run")]
+    return [
+        note
+        for note in result.notes
+        if note.startswith("hook_load differs from the load that closes the balance by another amount in each run")
+    ]
 
 
 @pytest.mark.parametrize(
@@ -55,7 +59,7 @@ def test_what_is_missing_is_told_beside_levels_of_load_cells(effect, times):
     assert result.verdict != UNEXPLAINED
     assert (result.verdict == NOTHING) == (effect is None)
     assert told(result) == [result.levels]
-    shown = [float(each) for each in told(result)[0].split(" % ")[0].split(", ")[1].split(" to ")]
+    shown = [float(each) for each in told(result)[0].split(" % ")[0].split("each run, ")[1].split(" to ")]
     assert shown == pytest.approx([100.0 * times * OFF.min(), 100.0 * times * OFF.max()], abs=0.1)
     assert not any("no hook_load" in note for note in result.notes)
     assert result.holdout.size_after.value < 1.5 * result.holdout.noise_floor
@@ -250,4 +254,4 @@ def test_levels_are_not_asked_where_they_are_small_or_of_few_runs(monkeypatch, c
 
 def test_levels_are_said_once_by_their_ends():
     said = again._said(np.array([0.001, -0.004, 0.0025]))
-    assert "hook_load is off by another amount in each run, -0.4 to +0.25 % of the load" in said
+    assert "by another amount in each run, -0.4 to +0.25 % of the load" in said

@@ -175,8 +175,8 @@ def _said(off: FloatArray) -> str:
     span = f"{100.0 * off.min():+.2g} to {100.0 * off.max():+.2g} % of the load"
     return (
         f"hook_load differs from the load that closes the balance by another amount in each run, {span}, with no "
-        "signal (the load cell, or zeros of the drive's transducers): the balance is believed, so that nothing that only "
-        "adds to the load could be told. Weigh each load and read the zeros before each run"
+        "signal (the load cell, or zeros of the drive's transducers): the balance is believed, so that nothing that "
+        "only adds to the load could be told. Weigh each load and read the zeros before each run"
     )
 
 

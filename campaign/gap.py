@@ -13,12 +13,15 @@ import os
 import resource
 import tempfile
 import time
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping, Sequence
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 for threads in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS"):
     os.environ.setdefault(threads, "1")  # before numpy: one process per core, not several threads in each
+
+import numpy as np  # noqa: E402
 
 from campaign.commit import commit  # noqa: E402
 from campaign.gap_cases import QUICK, Case, Counts, all_cases  # noqa: E402
@@ -32,15 +35,17 @@ RESULTS = Path("out/campaign_gap/results.jsonl")
 TABLE = Path("docs/campaign_gap.md")
 
 
-def diagnose(case: Case) -> dict[str, Any]:
-    """Generate one data set, run the workflow on it, judge its answer."""
+def diagnose(case: Case, cells: float = 0.0) -> dict[str, Any]:
+    """Generate one data set, run the workflow on it, judge its answer; the load cell of each run is off by another
+    amount, `cells` % of the load (standard deviation).
+    """
     from winch_friction.discrepancy.answer import GapOptions
     from winch_friction.discrepancy.workflow import find_gap
     from winch_friction.physics.signals import Run
 
     data = make_dataset(case.seed, case.flavour, case.effects, sigma=case.sigma)
     crane, model = owner_files(case)
-    runs = [Run(f"run_{k + 1:02d}", columns) for k, columns in enumerate(data)]
+    runs = [Run(f"run_{k + 1:02d}", columns) for k, columns in enumerate(weighed(data, cells, case.seed))]
     started = time.perf_counter()
     result = find_gap(runs, crane, model, GapOptions(plan=False))
     seconds = time.perf_counter() - started
@@ -61,6 +66,15 @@ def diagnose(case: Case) -> dict[str, Any]:
     } | judged
 
 
+def weighed(data: Sequence[Mapping[str, Any]], cells: float, seed: int) -> list[Mapping[str, Any]]:
+    """Runs by their columns, with load cells that are off by another amount in each, `cells` % of the load."""
+    off = 0.01 * cells * np.random.default_rng(seed + 1).standard_normal(len(data))
+    return [
+        {**run, "hook_load": run["hook_load"] * (1.0 + share)} if "hook_load" in run else run
+        for run, share in zip(data, off, strict=True)
+    ]
+
+
 def owner_files(case: Case) -> tuple[Any, Any]:
     """Crane and seed model of a data set, as its owner's files describe them."""
     from winch_friction.records.crane_file import load_crane
@@ -73,10 +87,10 @@ def owner_files(case: Case) -> tuple[Any, Any]:
         return load_crane(str(crane)), load_model(str(model))
 
 
-def diagnose_or_say(case: Case) -> dict[str, Any]:
+def diagnose_or_say(case: Case, cells: float = 0.0) -> dict[str, Any]:
     """As `diagnose`; a defect becomes a result of its own, counted against every bar."""
     try:
-        return diagnose(case)
+        return diagnose(case, cells)
     except Exception as error:
         return {
             "key": case.key,
@@ -100,14 +114,15 @@ def finished(path: Path) -> dict[str, dict[str, Any]]:
     return found
 
 
-def run(cases: Iterable[Case], processes: int, path: Path, until: float = float("inf")) -> None:
-    """Work through the cases that have no result yet; stop handing out at the Unix time `until`."""
+def run(cases: Iterable[Case], processes: int, path: Path, until: float = float("inf"), cells: float = 0.0) -> None:
+    """Work through the cases that have no result yet; stop handing out at the Unix time `until`. `cells` % that load
+    cells are off by from run to run."""
     done = finished(path)
     waiting = [case for case in cases if case.key not in done]
     path.parent.mkdir(parents=True, exist_ok=True)
     measured = commit()
     with path.open("a") as out, multiprocessing.get_context("spawn").Pool(processes) as pool:
-        for k, row in enumerate(pool.imap(diagnose_or_say, waiting)):
+        for k, row in enumerate(pool.imap(partial(diagnose_or_say, cells=cells), waiting)):
             out.write(json.dumps(row | {"commit": measured}) + "\n")
             out.flush()
             print(f"{k + 1}/{len(waiting)} {row['key']}: {row.get('error', row.get('verdict'))}", flush=True)
@@ -128,6 +143,7 @@ def main() -> None:
     parser.add_argument("--report-only", action="store_true", help="write the table from the results there are")
     parser.add_argument("--note", default="", help="a line for the head of the table")
     parser.add_argument("--only", help="cases whose key contains this")
+    parser.add_argument("--cells", type=float, default=0.0, help="%% of the load by which the cell of each run is off")
     for name, value in vars(Counts()).items():
         parser.add_argument(f"--{name.replace('_', '-')}", type=int, default=None, help=f"full campaign: {value}")
     chosen = parser.parse_args()
@@ -138,7 +154,7 @@ def main() -> None:
     counts = Counts(**(vars(QUICK if quick else Counts()) | given))
     cases = [case for case in all_cases(counts, chosen.first_seed) if not chosen.only or chosen.only in case.key]
     if not chosen.report_only:
-        run(cases, chosen.processes, results, time.time() + 60 * chosen.minutes)
+        run(cases, chosen.processes, results, time.time() + 60 * chosen.minutes, chosen.cells)
     write_table(table, list(finished(results).values()), counts, chosen.note)
 
 

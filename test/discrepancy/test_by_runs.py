@@ -24,7 +24,7 @@ def trial(kind, locked=FAR, train=FAR, law=EACH_RUN, names=("brake_drag",)):
     slot = SimpleNamespace(name="brake_drag", law=law)
     search = SimpleNamespace(
         verdict=SimpleNamespace(kind=kind), given=None, selection=SimpleNamespace(found=[SimpleNamespace(slot=slot)]),
-        flow=(), ripple=None, explanation=SimpleNamespace(names=names),
+        flow=(), ripple=None, explanation=SimpleNamespace(names=names, slots=()),
     )  # fmt: skip
     return SimpleNamespace(search=search, holdout=side(locked), train=side(train), levels="")
 

@@ -8,7 +8,7 @@ import pytest
 from gap_rig import names_of, runs_with
 
 from winch_friction.discrepancy import again
-from winch_friction.discrepancy.answer import MISSING, NOTHING, UNEXPLAINED, GapOptions
+from winch_friction.discrepancy.answer import AMBIGUOUS, MISSING, NOTHING, UNEXPLAINED, GapOptions
 from winch_friction.discrepancy.expansion import Split, loads_by_balance, meet
 from winch_friction.discrepancy.preparation.grid import uniform
 from winch_friction.discrepancy.preparation.seen import motion_of
@@ -143,9 +143,9 @@ def test_levels_are_told_of_both_ways_with_a_load_cell_alone(run, shows):
     assert not again._levels_show(run[0], nothing)
 
 
-def seen_at(start, oil, other=1.0):
+def seen_at(start, oil, kind=("main",), other=1.0):
     channels = {"oil_temperature": np.array([oil, 99.0]), "hook_load": np.array([other, 99.0])}
-    return SimpleNamespace(start=start, channels=channels, used=np.array([True, False]))
+    return SimpleNamespace(start=start, channels=channels, used=np.array([True, False]), kind=kind)
 
 
 SHARES = np.array([0.3, -0.2, 0.1, -0.4, 0.25, -0.05, 0.15, -0.3, 0.02, 0.12])  # %
@@ -171,36 +171,53 @@ def test_levels_are_a_cells_where_they_are_small_about_zero_and_of_no_signal(sha
     assert again._of_load_cells(0.01 * shares, list(map(seen_at, starts, oils))) == of_cells
 
 
+@pytest.mark.parametrize(("shares", "of_cells"), [(SHARES, True), (np.where(SHARES < 0.0, 3.0, 0.6) * SHARES, False)])
+def test_levels_of_heave_compensation_alone_are_no_cells(shares, of_cells):
+    """A zero of the passive side."""
+    kinds = [("active", "passive") if share < -0.1 else ("main",) for share in SHARES]
+    mixed = [("active", "passive") if k % 3 else ("main",) for k in range(10)]
+    runs = list(map(seen_at, MIXED, MIXED, mixed if of_cells else kinds))
+    assert again._of_load_cells(0.01 * shares, runs) == of_cells
+
+
 def size(left):
     return SimpleNamespace(size_after=SimpleNamespace(value=left, interval=(left, left)), floor=0.2, excused=0.2)
 
 
-def closed_by(kind, locked=0.2, train=0.2):
+def closed_by(kind, *names, locked=0.2, train=0.2):
+    search = SimpleNamespace(verdict=SimpleNamespace(kind=kind), explanation=SimpleNamespace(names=names))
     return SimpleNamespace(
-        search=SimpleNamespace(verdict=SimpleNamespace(kind=kind)), holdout=size(locked), train=size(train),
-        repaired=SimpleNamespace(model=BARE), levels=(),
+        search=search, holdout=size(locked), train=size(train), repaired=SimpleNamespace(model=BARE), levels="",
     )  # fmt: skip
 
 
 @pytest.mark.parametrize(
-    ("after", "of_cells", "taken"),
+    ("before", "after", "of_cells", "taken"),
     [
-        (closed_by(NOTHING), True, True),
-        (closed_by(MISSING), True, True),
-        (closed_by(NOTHING), False, False),
-        (closed_by(UNEXPLAINED), True, False),
-        (closed_by(NOTHING, locked=0.31), True, False),
-        (closed_by(NOTHING, train=0.41), True, False),
+        (closed_by(UNEXPLAINED), closed_by(NOTHING), True, True),
+        (closed_by(UNEXPLAINED), closed_by(MISSING, "one"), True, True),
+        (closed_by(UNEXPLAINED), closed_by(NOTHING), False, False),
+        (closed_by(UNEXPLAINED), closed_by(UNEXPLAINED), True, False),
+        (closed_by(UNEXPLAINED), closed_by(NOTHING, locked=0.31), True, False),
+        (closed_by(UNEXPLAINED), closed_by(NOTHING, train=0.41), True, False),
+        (closed_by(MISSING, "one"), closed_by(NOTHING), True, True),
+        (closed_by(MISSING, "one"), closed_by(NOTHING), False, False),
+        (closed_by(MISSING, "one"), closed_by(NOTHING, train=0.21), True, False),  # the name leaves less
+        (closed_by(MISSING, "one"), closed_by(NOTHING, locked=0.21), True, False),
+        (closed_by(AMBIGUOUS, "one"), closed_by(AMBIGUOUS, "two"), True, False),  # no fewer
+        (closed_by(AMBIGUOUS, "one", "two"), closed_by(MISSING, "one"), True, True),
     ],
 )
-def test_levels_stand_where_they_are_load_cells_and_bring_all_runs_to_their_floor(monkeypatch, after, of_cells, taken):
+def test_levels_stand_where_they_are_load_cells_and_bring_all_runs_to_their_floor(
+    monkeypatch, before, after, of_cells, taken
+):
     asked = []
     monkeypatch.setattr(again, "standing", lambda study, search: replace(Trial(*[None] * 4), **vars(after)))
     monkeypatch.setattr(again, "search_runs", lambda study, given: asked.extend(study.split.runs))
     monkeypatch.setattr(again, "_of_load_cells", lambda off, prepared: of_cells)
-    monkeypatch.setattr(again, "_own_levels", lambda search: 1.1)
+    monkeypatch.setattr(again, "_levels_may_be", lambda trial: True)
     study, given = several(7)
-    before = replace(Trial(*[None] * 4), search=SimpleNamespace(given=given))
+    before.search.given = given
     other, found = again.by_levels(study, before)
     assert [(COURSE in run, "hook_load" in run) for run in asked] == [(True, False)] * 6 + [(False, True)]
     assert (found is not before) == (other is not study) == taken
@@ -232,21 +249,58 @@ def test_levels_are_not_asked_of_a_simulation_or_of_a_load_that_the_model_correc
 @pytest.mark.parametrize(("level", "friction", "found"), [(0.0, 9.0, 0.0), (2.0, 9.0, 2.0), (-2.0, 0.0, 2.0)])
 def test_levels_of_runs_act_one_way_whatever_the_motion(level, friction, found):
     """The third run only lowers: of it nobody tells one from friction."""
+    left, blocks = three_runs(level, friction)
+    assert again._own_levels(left, blocks) == pytest.approx(found)
+
+
+def three_runs(level, friction):
+    """What is left of two runs of a level of either sign, with friction, and of one that only lowers."""
     run, way = np.repeat([0, 1, 2], 30), np.where(np.arange(90) % 30 < 20, 1.0, -1.0)
     way[run == 2] = -1.0
-    left = np.where(run == 0, level, -level) + friction * way
+    return np.where(run == 0, level, -level) + friction * way, SimpleNamespace(run=run, direction=way)
+
+
+@pytest.mark.parametrize(
+    ("kind", "slots", "level", "friction", "may_be"),
+    [
+        (UNEXPLAINED, "", 0.49, 9.0, False),
+        (UNEXPLAINED, "", 0.51, 9.0, True),
+        (MISSING, "friction", 9.0, 0.0, False),  # a level opposes no motion
+        (MISSING, "signal", 9.0, 0.0, True),
+        (MISSING, "signal", 0.49, 0.0, False),
+        (MISSING, "signal", 2.0, 2.5, False),  # most of what the name stands for is no level
+        (MISSING, "signal", 2.0, 1.5, True),
+        (MISSING, "signal friction", 2.0, 0.0, True),
+    ],
+)
+def test_levels_may_stand_for_what_acts_one_way_where_they_are_most_of_it(kind, slots, level, friction, may_be):
+    left, blocks = three_runs(level, friction)
+    named = [SimpleNamespace(origin=(SimpleNamespace(opposing=each == "friction"), None)) for each in slots.split()]
+    told = {(): left, tuple(id(each) for each in named if each.origin[0].opposing): left}
     cross = SimpleNamespace(
-        problem=SimpleNamespace(blocks=SimpleNamespace(run=run, direction=way)),
-        remainder=lambda explanation: left if explanation == "base" else None,
-    )
-    assert again._own_levels(SimpleNamespace(cross=cross, explanation="base")) == pytest.approx(found)
+        problem=SimpleNamespace(blocks=blocks), explain=lambda some: tuple(map(id, some)),
+        remainder=lambda explanation: told[explanation],
+    )  # fmt: skip
+    explanation = SimpleNamespace(slots=named) if named else ()
+    search = SimpleNamespace(cross=cross, verdict=SimpleNamespace(kind=kind), explanation=explanation or Slotless(()))
+    for train, locked in ((0.24, 0.2), (0.2, 0.24)):
+        trial = SimpleNamespace(search=search, train=size(train), holdout=size(locked))
+        assert again._levels_may_be(trial) == may_be
+    at_noise = SimpleNamespace(search=search, train=size(0.23), holdout=size(0.23))  # a name leaves nothing to explain
+    assert again._levels_may_be(at_noise) == (may_be and kind == UNEXPLAINED)
 
 
-@pytest.mark.parametrize(("count", "levels"), [(7, 0.49), (6, 9.0)])
-def test_levels_are_not_asked_where_they_are_small_or_of_few_runs(monkeypatch, count, levels):
+class Slotless(tuple):
+    """The explanation of a trial without a name."""
+
+    slots = ()
+
+
+@pytest.mark.parametrize(("count", "may_be"), [(7, False), (6, True)])
+def test_levels_are_not_asked_where_they_are_small_or_of_few_runs(monkeypatch, count, may_be):
     """What takes each of a few runs by itself takes whatever is another in each."""
     monkeypatch.setattr(again, "search_runs", lambda *_: pytest.fail("asked"))
-    monkeypatch.setattr(again, "_own_levels", lambda search: levels)
+    monkeypatch.setattr(again, "_levels_may_be", lambda trial: may_be)
     study, given = several(count)
     before = SimpleNamespace(search=SimpleNamespace(given=given))
     assert again.by_levels(study, before) == (study, before)

@@ -30,7 +30,7 @@ def side(left, by_run=()):
 
 def trial(kind, locked, by_run=(), names=(), train=FAR):
     search = SimpleNamespace(
-        verdict=SimpleNamespace(kind=kind), given=None, explanation=SimpleNamespace(names=tuple(names))
+        verdict=SimpleNamespace(kind=kind), given=None, explanation=SimpleNamespace(names=tuple(names), slots=())
     )
     return SimpleNamespace(search=search, holdout=side(locked), train=side(train, by_run))
 

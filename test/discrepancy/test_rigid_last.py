@@ -32,7 +32,7 @@ class Found:
     flow: tuple = ()
     ripple: object = None
 
-    explanation = SimpleNamespace(names=("one",))
+    explanation = SimpleNamespace(names=("one",), slots=())
 
     @property
     def verdict(self):

@@ -13,12 +13,22 @@ from winch_friction.discrepancy.answer import AMBIGUOUS, MISSING, UNEXPLAINED
 from winch_friction.discrepancy.candidates.families import SURFACES, free_members
 from winch_friction.discrepancy.catalogue import another_in_each_run, of_one_group
 from winch_friction.discrepancy.engine import FloatArray
+from winch_friction.discrepancy.engine.blocks import Blocks
 from winch_friction.discrepancy.engine.chance import chance_of_order, chance_of_zero_mean, rms
 from winch_friction.discrepancy.expansion import Given, Split, as_rigid, loads_by_balance, meet, swings
 from winch_friction.discrepancy.preparation.own_simulation import REFERENCE
 from winch_friction.discrepancy.preparation.prepare import PreparedRun
 from winch_friction.discrepancy.preparation.suspended_load import COURSE
-from winch_friction.discrepancy.proof import Trial, adds, at_the_floor, far_off, read_back, share_left, worse_runs
+from winch_friction.discrepancy.proof import (
+    Trial,
+    adds,
+    at_the_floor,
+    far_off,
+    nobodys,
+    read_back,
+    share_left,
+    worse_runs,
+)
 from winch_friction.discrepancy.run_states import EACH_RUN
 from winch_friction.discrepancy.search import Search, Study, every_candidate, search_runs
 from winch_friction.discrepancy.standing import standing, tried
@@ -27,6 +37,7 @@ from winch_friction.physics.signals import Run
 
 LEAST_LOAD = 1.0  # kg, of which a share is told
 SMALL_LEVELS = 0.5  # noises: less raises what is left by an eighth at most, and is not what keeps runs off their floor
+MOSTLY_LEVELS = 0.7  # of what is left above the noise, that is levels where a name may stand for them: half its square
 LEAST_EACH_WAY = 0.05  # of a run's samples, hoisting and lowering: of one way alone nobody tells a load from friction
 
 
@@ -141,17 +152,16 @@ def _locking(split: Split, showing: Sequence[str], kept: Sequence[str]) -> Split
 
 
 def by_levels(study: Study, trial: Trial) -> tuple[Study, Trial]:
-    """What nothing explains, once more with load cells that tell the course of a load but not its level, which is what
-    closes each run's balance (a run of one way does not tell it: there the cell is believed). Study and trial as they
-    are unless the locked runs are brought to their floor, and the others near theirs, by levels that load cells are off
-    by: small, another in each run, and of no signal.
+    """What nothing explains, or something that acts one way, once more with load cells that tell the course of a load
+    but not its level, which is what closes each run's balance (a run of one way does not tell it: there the cell is
+    believed). Study and trial as they are unless the locked runs are brought to their floor, and the others near
+    theirs, by levels that load cells are off by: small, another in each run, and of no signal; in place of names, with
+    fewer of them and no more left of either side.
     """
     given, runs = trial.search.given, study.split.runs
     pairs = [pair for pair in zip(runs, given.prepared, strict=True) if _levels_show(*pair)]
     corrected = any("hook_load" in each.declared.channels for each in given.model.corrections)
-    if corrected or REFERENCE in runs[0].metadata or len(pairs) < LIMITS.fewest_levels:
-        return study, trial
-    if _own_levels(trial.search) < SMALL_LEVELS:
+    if corrected or REFERENCE in runs[0].metadata or len(pairs) < LIMITS.fewest_levels or not _levels_may_be(trial):
         return study, trial
     cells = {run.name: float(np.nanmedian(run["hook_load"])) for run, _ in pairs}
     courses = tuple(_untold(run) if run.name in cells else run for run in runs)
@@ -159,10 +169,27 @@ def by_levels(study: Study, trial: Trial) -> tuple[Study, Trial]:
     proven = standing(other, search_runs(other, meet(courses, study.crane, given.model)))
     if proven.search.verdict.kind == UNEXPLAINED or not at_the_floor(proven.holdout) or far_off(proven.train):
         return study, trial
+    if trial.search.verdict.kind != UNEXPLAINED and not _simpler(trial, proven):
+        return study, trial
     loads = loads_by_balance(courses, study.crane, read_back(proven.repaired.model))
     off = np.array([cell / max(loads[name], LEAST_LOAD) - 1.0 for name, cell in cells.items()])
     of_cells = _of_load_cells(off, [prepared for _, prepared in pairs])
     return (other, replace(proven, levels=_said(off))) if of_cells else (study, trial)
+
+
+def _levels_may_be(trial: Trial) -> bool:
+    """Whether a trial leaves levels by themselves that matter, or its names that act one way leave something, and stand
+    where most of what is left without them is levels."""
+    search = trial.search
+    slots, cross = search.explanation.slots, search.cross
+    opposing = [slot for slot in slots if slot.origin[0].opposing]
+    left = cross.remainder(cross.explain(opposing) if slots else search.explanation)
+    levels = _own_levels(left, cross.problem.blocks)
+    if search.verdict.kind == UNEXPLAINED:
+        return levels >= SMALL_LEVELS
+    more = float(np.sqrt(max(rms(left) ** 2 - 1.0, 0.0)))  # than noise
+    one_way = len(opposing) < len(slots) and not (nobodys(trial.train) and nobodys(trial.holdout))
+    return one_way and levels >= max(SMALL_LEVELS, MOSTLY_LEVELS * more)
 
 
 def _untold(run: Run) -> Run:
@@ -187,16 +214,16 @@ def _levels_show(run: Run, prepared: PreparedRun) -> bool:
     return bool(both) and "hook_load" in run and not prepared.tension_measured
 
 
-def _own_levels(search: Search) -> float:
+def _own_levels(left: FloatArray, blocks: Blocks) -> float:
     """What the runs keep of levels that act one way whatever the motion, root mean square over runs, in noises."""
-    left, blocks = search.cross.remainder(search.explanation), search.cross.problem.blocks
     ways = [[left[(blocks.run == k) & (blocks.direction * s > 0.0)] for s in (1.0, -1.0)] for k in set(blocks.run)]
     return rms(np.array([np.mean([np.mean(each) for each in both]) for both in ways if all(map(len, both))]))
 
 
 def _of_load_cells(off: FloatArray, runs: Sequence[PreparedRun]) -> bool:
     """Whether a share of the load by run is what load cells are off by: of no more than these may be, more than they
-    repeat to, about zero, and told by no signal that is another in each run."""
+    repeat to, about zero, as much in heave compensation as without, and told by no signal that is another in each
+    run."""
     if np.abs(off).max() > LIMITS.most_level or rms(off) < LIMITS.at_the_floor * LIMITS.least_share_of_load:
         return False
     names = sorted(set.intersection(*(set(run.channels) for run in runs)))
@@ -205,7 +232,9 @@ def _of_load_cells(off: FloatArray, runs: Sequence[PreparedRun]) -> bool:
         *([float(np.median(run.channels[n][run.used])) for run in runs] for n in names),
     ]
     ordered = [chance_of_order(np.array(each), off) for each in told]
-    return min(chance_of_zero_mean(off), *(len(told) * p for p in ordered)) >= LIMITS.level_p
+    kinds = sorted({run.kind for run in runs})
+    of_kind = chance_of_order(np.array([float(kinds.index(run.kind)) for run in runs]), off)
+    return min(chance_of_zero_mean(off), of_kind, *(len(told) * p for p in ordered)) >= LIMITS.level_p
 
 
 def without_swing(study: Study, given: Given, trial: Trial) -> Trial:

@@ -135,7 +135,8 @@ def _once_more(study: Study, given: Given, trial: Trial, search: Search) -> tupl
     if trial.search.verdict.kind == UNEXPLAINED and swings(given):
         study.options.told("searching without a swing of the load")
         trial = again.without_swing(study, given, trial)
-    return again.by_levels(study, trial) if trial.search.verdict.kind == UNEXPLAINED else (study, trial)
+    one_way = not all(slot.origin[0].opposing for slot in trial.search.explanation.slots)
+    return again.by_levels(study, trial) if one_way or trial.search.verdict.kind == UNEXPLAINED else (study, trial)
 
 
 def _with_other_runs(study: Study, trial: Trial) -> tuple[Study, Trial]:
@@ -263,9 +264,7 @@ def _concluded(model: FrictionModel, given: FrictionModel, verdict: str) -> Fric
 def _notes(runs: Sequence[Run], loads: Mapping[str, float]) -> tuple[str, ...]:
     notes = [f"{name}: no hook_load; {load / 1e3:.1f} t estimated from the balance" for name, load in loads.items()]
     bare = [run.name for run in runs if "wire_layer" not in run and run.groups]
-    if bare:
-        notes.append(f"no wire_layer in {len(bare)} runs: the outer layer is assumed")
-    return tuple(notes)
+    return (*notes, *([f"no wire_layer in {len(bare)} runs: the outer layer is assumed"] if bare else []))
 
 
 def _amounts(model: FrictionModel, runs: Sequence[Run]) -> list[str]:

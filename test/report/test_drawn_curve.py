@@ -84,7 +84,7 @@ def test_a_brake_says_what_it_took_of_every_run():
 def test_a_file_that_says_nothing_of_the_next_run_is_not_to_be_loaded(law, of_the_next):
     effect = Effect("brake_drag", (), "", "x^2", {}, 1e-9, 0.9, 1.0, law_name=law)
     found = {"effects": [effect], "verdict": "missing_effect", "model": SimpleNamespace(corrections=(), terms=())}
-    said = " ".join(next_steps(SimpleNamespace(next_experiment=None, adequacy=(), **found)))
+    said = " ".join(next_steps(SimpleNamespace(next_experiment=None, adequacy=(), levels="", **found)))
     assert ("winch-friction load model.yaml" in said) is of_the_next
     assert ("nothing of the next one" in said) is not of_the_next
 
@@ -99,7 +99,7 @@ def test_what_is_no_curve_over_one_signal_is_shown_as_before():
 def test_an_experiment_that_parts_nothing_is_not_asked_for(note, parted):
     plan = {"scenario": "experiment_loads.yaml", "separates": ["brake_drag", "coulomb"], "expected_z": 4.0 * parted,
             "note": note}  # fmt: skip
-    (said,) = next_steps(SimpleNamespace(next_experiment=plan, effects=[], verdict="ambiguous", adequacy=()))
+    (said,) = next_steps(SimpleNamespace(next_experiment=plan, effects=[], verdict="ambiguous", levels="", adequacy=()))
     assert ("winch-friction simulate" in said) is parted
     assert ("another channel" in said) is not parted
 

@@ -7,8 +7,9 @@ import numpy as np
 import pytest
 from gap_rig import names_of, runs_with
 
-from winch_friction.discrepancy import again
+from winch_friction.discrepancy import again, workflow
 from winch_friction.discrepancy.answer import AMBIGUOUS, MISSING, NOTHING, UNEXPLAINED, GapOptions
+from winch_friction.discrepancy.engine.chance import chance_of_order, chance_of_zero_mean
 from winch_friction.discrepancy.expansion import Split, loads_by_balance, meet
 from winch_friction.discrepancy.preparation.grid import uniform
 from winch_friction.discrepancy.preparation.seen import motion_of
@@ -88,11 +89,11 @@ def load_cell(level, known=np.nan, told=COURSE):
     return load_of(grid, motion_of(grid, CRANE, "lift", turning=False), CRANE, known).mass, run[told] - level
 
 
-@pytest.mark.parametrize("level", [-150.0, 0.0, 300.0])
-def test_a_course_has_the_level_that_is_known_and_keeps_the_rope_paid_out(level):
-    found, true = load_cell(level, 20e3)
+@pytest.mark.parametrize(("level", "known"), [(-150.0, 20e3), (0.0, 20e3), (300.0, 20e3), (0.0, 60e3)])
+def test_a_course_has_the_level_that_is_known_and_keeps_the_rope_paid_out(level, known):
+    found, true = load_cell(level, known)
     assert np.ptp(true) > 50.0
-    assert found == pytest.approx(true - np.median(true) + 20e3, abs=5.0)
+    assert found == pytest.approx(true - np.median(true) + known, abs=5.0)
 
 
 def test_a_cell_that_is_believed_keeps_its_level_whatever_is_known():
@@ -107,6 +108,12 @@ def test_the_level_of_a_course_is_what_closes_the_balance_without_pressures_too(
     assert loads["lift"] == pytest.approx(20e3, rel=1e-3)
     assert meet([run], CRANE, BARE).loads == loads
     assert not loads_by_balance([lifted(level, "hook_load")], CRANE, BARE)
+
+
+def test_the_balance_is_closed_as_the_models_corrections_have_it():
+    """0.1 m less of a radius of 0.5 m is a quarter more of a load."""
+    smaller = replace(BARE, corrections=(Correction("layer_radius", -0.1),))
+    assert loads_by_balance([lifted(0.0)], CRANE, smaller)["lift"] == pytest.approx(25e3, rel=1e-3)
 
 
 @pytest.mark.parametrize(("column", "told"), [(COURSE, False), ("hook_load", True)])
@@ -150,6 +157,7 @@ def seen_at(start, oil, kind=("main",), other=1.0):
 
 SHARES = np.array([0.3, -0.2, 0.1, -0.4, 0.25, -0.05, 0.15, -0.3, 0.02, 0.12])  # %
 BY_ORDER = np.argsort(np.argsort(SHARES)).astype(float)
+NEARLY = np.array([8.0, 2.0, 5.0, 0.0, 9.0, 7.0, 3.0, 1.0, 4.0, 6.0])
 MIXED = np.array([4.0, 9.0, 1.0, 6.0, 2.0, 8.0, 5.0, 0.0, 7.0, 3.0])
 
 
@@ -165,6 +173,7 @@ MIXED = np.array([4.0, 9.0, 1.0, 6.0, 2.0, 8.0, 5.0, 0.0, 7.0, 3.0])
         (SHARES, BY_ORDER, MIXED, False),  # a drift
         (SHARES, MIXED, BY_ORDER, False),  # what warms up
         (SHARES, MIXED, -BY_ORDER, False),
+        (SHARES, MIXED, NEARLY, True),  # p = 0.006 of one of three signals
     ],
 )
 def test_levels_are_a_cells_where_they_are_small_about_zero_and_of_no_signal(shares, starts, oils, of_cells):
@@ -187,7 +196,8 @@ def size(left):
 def closed_by(kind, *names, locked=0.2, train=0.2):
     search = SimpleNamespace(verdict=SimpleNamespace(kind=kind), explanation=SimpleNamespace(names=names))
     return SimpleNamespace(
-        search=search, holdout=size(locked), train=size(train), repaired=SimpleNamespace(model=BARE), levels="",
+        search=search, holdout=size(locked), train=size(train), levels="",
+        repaired=SimpleNamespace(model=replace(BARE, name="repaired")),
     )  # fmt: skip
 
 
@@ -216,6 +226,10 @@ def test_levels_stand_where_they_are_load_cells_and_bring_all_runs_to_their_floo
     monkeypatch.setattr(again, "search_runs", lambda study, given: asked.extend(study.split.runs))
     monkeypatch.setattr(again, "_of_load_cells", lambda off, prepared: of_cells)
     monkeypatch.setattr(again, "_levels_may_be", lambda trial: True)
+    closed = []
+    monkeypatch.setattr(
+        again, "loads_by_balance", lambda runs, *of: closed.append(of[1].name) or loads_by_balance(runs, *of)
+    )
     study, given = several(7)
     before.search.given = given
     other, found = again.by_levels(study, before)
@@ -224,6 +238,7 @@ def test_levels_stand_where_they_are_load_cells_and_bring_all_runs_to_their_floo
     if taken:
         assert "+0.5 to +0.5 % of the load" in found.levels
         assert COURSE in other.split.runs[0]
+    assert set(closed) <= {"repaired"}
 
 
 def several(count):
@@ -304,6 +319,28 @@ def test_levels_are_not_asked_where_they_are_small_or_of_few_runs(monkeypatch, c
     study, given = several(count)
     before = SimpleNamespace(search=SimpleNamespace(given=given))
     assert again.by_levels(study, before) == (study, before)
+
+
+@pytest.mark.parametrize(
+    ("kind", "opposing", "asked"),
+    [(MISSING, [True], 0), (MISSING, [True, False], 1), (UNEXPLAINED, [], 1), (NOTHING, [], 0)],
+)
+def test_what_is_open_or_acts_one_way_is_held_against_levels(monkeypatch, kind, opposing, asked):
+    calls = []
+    monkeypatch.setattr(workflow.again, "by_levels", lambda study, trial: calls.append(trial) or (study, trial))
+    monkeypatch.setattr(workflow, "swings", lambda given: False)
+    slots = [SimpleNamespace(origin=(SimpleNamespace(opposing=each), None)) for each in opposing]
+    search = SimpleNamespace(verdict=SimpleNamespace(kind=kind), explanation=SimpleNamespace(slots=slots))
+    study = SimpleNamespace(options=GapOptions(candidates=("own",)))
+    workflow._once_more(study, None, SimpleNamespace(search=search), search)
+    assert len(calls) == asked
+
+
+def test_values_without_a_mean_are_told_by_students_test():
+    """Mean 2 of 1, 2, 3: t = 2 sqrt(3) of two degrees of freedom, p = 1 - t / sqrt(t^2 + 2)."""
+    t = 2.0 * np.sqrt(3.0)
+    assert chance_of_zero_mean(np.array([1.0, 2.0, 3.0])) == pytest.approx(1.0 - t / np.sqrt(t**2 + 2.0))
+    assert chance_of_order(np.ones(5), np.arange(5.0)) == 1.0
 
 
 def test_levels_are_said_once_by_their_ends():

@@ -199,3 +199,16 @@ def test_a_seed_is_refuted_only_where_its_freed_parameters_close_the_gap(answers
     answers.search, answers.judged = [Found(verdict)], [(verdict, CLOSED)]
     found = workflow.find_gap(runs, None, None, GapOptions(proposals=False))
     assert found.seed_refuted == (("K4",) if told else ())
+
+
+@pytest.mark.parametrize(("levels", "refuted"), [("", ("K4",)), ("cells are off", ())])
+def test_a_seed_is_asked_anew_where_load_cells_are_not_believed(answers, monkeypatch, levels, refuted):
+    """What levels did to the first search is no fault of the seed's."""
+    runs, said = surrounded(monkeypatch, RIGID), ["K4", None]
+    monkeypatch.setattr(workflow, "try_seed", lambda *_: SimpleNamespace(enough=False, refuted=said.pop(0)))
+    monkeypatch.setattr(
+        workflow, "_once_more",
+        lambda study, given, trial, _: (study, SimpleNamespace(**{**vars(trial), "levels": levels})),
+    )  # fmt: skip
+    answers.search, answers.judged = [Found(NOTHING)], [(NOTHING, CLOSED)]
+    assert workflow.find_gap(runs, None, None, GapOptions(proposals=False)).seed_refuted == refuted

@@ -9,7 +9,7 @@ from gap_rig import names_of, runs_with
 
 from winch_friction.discrepancy import again, workflow
 from winch_friction.discrepancy.answer import AMBIGUOUS, MISSING, NOTHING, UNEXPLAINED, GapOptions
-from winch_friction.discrepancy.engine.chance import chance_of_order, chance_of_zero_mean
+from winch_friction.discrepancy.engine.chance import chance_of_order, chance_of_zero_mean, levels_of_runs
 from winch_friction.discrepancy.expansion import Split, loads_by_balance, meet
 from winch_friction.discrepancy.preparation.grid import uniform
 from winch_friction.discrepancy.preparation.seen import motion_of
@@ -265,7 +265,9 @@ def test_levels_are_not_asked_of_a_simulation_or_of_a_load_that_the_model_correc
 def test_levels_of_runs_act_one_way_whatever_the_motion(level, friction, found):
     """The third run only lowers: of it nobody tells one from friction."""
     left, blocks = three_runs(level, friction)
-    assert again._own_levels(left, blocks) == pytest.approx(found)
+    own = levels_of_runs(left, blocks)
+    assert [abs(each) for each in own.values()] == pytest.approx([found, found])
+    assert [*own] == [0, 1]
 
 
 def three_runs(level, friction):

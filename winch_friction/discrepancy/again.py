@@ -13,8 +13,7 @@ from winch_friction.discrepancy.answer import AMBIGUOUS, MISSING, UNEXPLAINED
 from winch_friction.discrepancy.candidates.families import SURFACES, free_members
 from winch_friction.discrepancy.catalogue import another_in_each_run, of_one_group
 from winch_friction.discrepancy.engine import FloatArray
-from winch_friction.discrepancy.engine.blocks import Blocks
-from winch_friction.discrepancy.engine.chance import chance_of_order, chance_of_zero_mean, rms
+from winch_friction.discrepancy.engine.chance import chance_of_order, chance_of_zero_mean, levels_of_runs, rms
 from winch_friction.discrepancy.expansion import Given, Split, as_rigid, loads_by_balance, meet, swings
 from winch_friction.discrepancy.preparation.own_simulation import REFERENCE
 from winch_friction.discrepancy.preparation.prepare import PreparedRun
@@ -184,7 +183,7 @@ def _levels_may_be(trial: Trial) -> bool:
     slots, cross = search.explanation.slots, search.cross
     opposing = [slot for slot in slots if slot.origin[0].opposing]
     left = cross.remainder(cross.explain(opposing) if slots else search.explanation)
-    levels = _own_levels(left, cross.problem.blocks)
+    levels = rms(np.array([*levels_of_runs(left, cross.problem.blocks).values()]))  # of all runs, in noises
     if search.verdict.kind == UNEXPLAINED:
         return levels >= SMALL_LEVELS
     more = float(np.sqrt(max(rms(left) ** 2 - 1.0, 0.0)))  # than noise
@@ -212,12 +211,6 @@ def _levels_show(run: Run, prepared: PreparedRun) -> bool:
     ways = prepared.direction[prepared.used]
     both = min(np.mean(ways > 0.0), np.mean(ways < 0.0)) >= LEAST_EACH_WAY if len(ways) else False
     return bool(both) and "hook_load" in run and not prepared.tension_measured
-
-
-def _own_levels(left: FloatArray, blocks: Blocks) -> float:
-    """What the runs keep of levels that act one way whatever the motion, root mean square over runs, in noises."""
-    ways = [[left[(blocks.run == k) & (blocks.direction * s > 0.0)] for s in (1.0, -1.0)] for k in set(blocks.run)]
-    return rms(np.array([np.mean([np.mean(each) for each in both]) for both in ways if all(map(len, both))]))
 
 
 def _of_load_cells(off: FloatArray, runs: Sequence[PreparedRun]) -> bool:

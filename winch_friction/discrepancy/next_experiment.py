@@ -16,7 +16,7 @@ from winch_friction.discrepancy.adequacy import HEAVE, SWING, TELLING, Check
 from winch_friction.discrepancy.answer import INSUFFICIENT, GapResult, Side
 from winch_friction.discrepancy.engine import FloatArray
 from winch_friction.discrepancy.engine.blocks import Blocks, Slot
-from winch_friction.discrepancy.engine.chance import Size, rms
+from winch_friction.discrepancy.engine.chance import Size, levels_of_runs, rms
 from winch_friction.discrepancy.engine.crossfit import CrossFit, Explanation
 from winch_friction.discrepancy.expansion import Expansion, Given, Split
 from winch_friction.discrepancy.preparation.prepare import prepare
@@ -207,15 +207,12 @@ def levels_of(sides: Sequence[Side]) -> Levels | None:
     shares: list[float] = []
     kept, beside = (np.zeros(len(sides)) for _ in range(2))  # above the noise, squared
     for j, side in enumerate(sides):
-        left, way = side.after.copy(), side.blocks.direction
-        for k, run in enumerate(side.runs):
-            own = side.blocks.run == k
-            means = [float(side.after[own & (way == s)].mean()) for s in (1.0, -1.0) if np.any(own & (way == s))]
-            if len(means) < 2:  # of one direction alone nobody tells a level from friction
-                continue
-            left[own] -= np.mean(means)
+        left = side.after.copy()
+        for k, level in levels_of_runs(side.after, side.blocks).items():
+            left[side.blocks.run == k] -= level
+            run = side.runs[k]
             weight = float(np.median(np.abs(run.drum_torque))) / run.gear_ratio  # N m at the shaft
-            shares.append(100.0 * float(np.mean(means)) * run.unit_torque / max(weight, NO_LOAD))
+            shares.append(100.0 * level * run.unit_torque / max(weight, NO_LOAD))
         noise = LIMITS.at_the_floor * side.floor
         kept[j], beside[j] = (max(rms(each) ** 2 - noise**2, 0.0) for each in (side.after, left))
     signed = len(shares) >= LIMITS.fewest_levels and min(shares) < 0.0 < max(shares)

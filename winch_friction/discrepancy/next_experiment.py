@@ -180,7 +180,7 @@ def of_runs(sides: Sequence[Side]) -> list[str]:
 @dataclass(frozen=True)
 class Levels:
     """A level of its own in each run that acts one way whatever the motion: a load or a zero that is off by another
-    amount each time, no friction."""
+    amount each time, no friction; where all have one sign, beside one that is off in all runs."""
 
     shares: tuple[float, ...]  # % of the run's load
     beside: float  # of what the runs keep above the noise, squared, how much is something else
@@ -194,10 +194,15 @@ class Levels:
             else f"which is no friction, and {100.0 * (1.0 - self.beside):.0f} % of what they keep above the noise "
             "(squared): what else is missing shows once it is gone"
         )
+        mean = float(np.mean(self.shares))
+        common = "" if min(self.shares) < 0.0 < max(self.shares) else (
+            f" (all of one sign, {mean:+.2g} % in the mean: such as a zero, scale or weight that is off in all runs, "
+            "beside levels too large to tell which)"
+        )  # fmt: skip
         return (
             f"each run keeps a level of its own that acts the same way hoisting and lowering, {min(self.shares):+.2g} "
-            f"to {max(self.shares):+.2g} % of its load, {beside}. Weigh each load (or log hook_load from a load cell) "
-            "and read the zeros before each run, then ask again"
+            f"to {max(self.shares):+.2g} % of its load{common}, {beside}. Weigh each load (or log hook_load from a "
+            "load cell) and read the zeros before each run, then ask again"
         )
 
 
@@ -215,8 +220,7 @@ def levels_of(sides: Sequence[Side]) -> Levels | None:
             shares.append(100.0 * level * run.unit_torque / max(weight, NO_LOAD))
         noise = LIMITS.at_the_floor * side.floor
         kept[j], beside[j] = (max(rms(each) ** 2 - noise**2, 0.0) for each in (side.after, left))
-    signed = len(shares) >= LIMITS.fewest_levels and min(shares) < 0.0 < max(shares)
-    if not kept.any() or not signed or beside.sum() > MOST_BESIDE * kept.sum():
+    if not kept.any() or len(shares) < LIMITS.fewest_levels or beside.sum() > MOST_BESIDE * kept.sum():
         return None
     return Levels(tuple(shares), float(beside.sum() / kept.sum()))
 

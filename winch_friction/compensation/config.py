@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from winch_friction.physics.channels import SLOW_INPUTS
 from winch_friction.physics.errors import InputError, check, limits_of, option
 from winch_friction.physics.friction import registered_terms
+from winch_friction.physics.winch.operating_point import TELLING_STROKE
 
 # below this the friction feedforward drives a torque-commanded winch into a limit cycle on measured speed
 SAFE_MEASURED_SPEED_WIDTH = 75.0  # rad/s
@@ -77,7 +78,7 @@ class CompensatorConfig:
         math.inf, lower=0.0, upper=math.inf, unit="Pa", doc="bound of the pressure; never above the crane's rated one"
     )
     min_displacement: float = option(
-        0.1, lower=0.01, upper=1.0, doc="D/D_max below which the pressure feedforward falls to zero"
+        TELLING_STROKE, lower=0.01, upper=1.0, doc="D/D_max below which the pressure feedforward falls to zero"
     )
 
     def __post_init__(self) -> None:

@@ -18,7 +18,7 @@ from winch_friction.physics.friction.term import needed
 from winch_friction.physics.signals import FloatArray, Run
 from winch_friction.physics.winch import Crane, group_point, operating_point
 from winch_friction.physics.winch.crane import held, run_drum_torque, run_rope_radius
-from winch_friction.physics.winch.operating_point import CHANNEL_SIGNALS, LEAST_DISPLACEMENT
+from winch_friction.physics.winch.operating_point import CHANNEL_SIGNALS, LEAST_DISPLACEMENT, TELLING_STROKE
 
 LOW_SPEED = 250.0 * RPM  # paper 2: within 1 % of nominal above it
 _HOOK_ONLY = 0.1  # of the heaviest test's torque
@@ -27,7 +27,6 @@ _WIRE_DAMPING = 1.5e5  # N s/m, load on rope, sheaves and boom: engineering judg
 _HOLE = 3.0  # s; half a quick wave: a straight line over more says nothing of the motion
 _LOST = 1.5  # samples; where two rows are further apart than this, some between them are lost
 _LEAST_SAMPLES = 10  # of a piece between holes
-_LEAST_STROKE = 0.1  # of the largest; below, the pressure that a torque takes has no bound (the compensator's as well)
 _STICKING = 0.5  # rad/s of the smoothed speed; a winch that creeps faster has the friction of its direction
 STANDSTILL = 1.0  # rad/s, three encoder counts per scan; below it friction lies anywhere within the break-away level
 
@@ -186,7 +185,7 @@ def _predicted(piece: Run, crane: Crane, model: FrictionModel, group: str) -> Fl
     inertia, acceleration = inertia_torque(run, crane)
     held = drum_torque / crane.gear_ratio + inertia - _other_groups(run, crane, group, drop)
     stroke = run[f"{group}.displacement"]
-    floor = _LEAST_STROKE * (crane.max_displacement or float(stroke.max()))
+    floor = TELLING_STROKE * (crane.max_displacement or float(stroke.max()))
     capacity = crane.motor_count(group) * np.maximum(stroke, floor)
     predicted = held / capacity
     moving = _turns(run, crane)

@@ -21,15 +21,13 @@ from winch_friction.physics.friction.compiled import CompiledTerms
 from winch_friction.physics.signals import FloatArray, Run
 from winch_friction.physics.winch import Crane, group_point, operating_point
 from winch_friction.physics.winch.crane import hydraulic_torque
+from winch_friction.physics.winch.operating_point import TELLING_STROKE
 
 MOST_OF_STROKE = 0.5  # of a displacement, that an error may be of it: far more than any feedback is off
 SPARSEST = 0.055  # s; up to such a period a sea of four seconds and more still shows its acceleration to half a percent
 # least noises to which a slower log is followed, and so what it closes to at best: a step of a 12-bit transducer
 SHOWS = 1.5
 FIXED_POINT_STEPS = 3  # the next ones change the predicted pressure by a millibar at most (16 runs of four winches)
-# of the largest displacement, from which on a torque tells the pressure: at 300 bar each step of the fixed point leaves
-# a fifth of what was wrong (2 K5 p/D); at a fiftieth of the stroke it leaves all, and below it makes more
-LEAST_STROKE = 0.1
 OPTIONAL = ("oil_temperature", "wire_layer", "wire_out")
 
 
@@ -162,7 +160,7 @@ class Balancing:
     def _hydraulic(self, load: SuspendedLoad, frictionless: FloatArray) -> Balance:
         groups, measured = self.seen.measured
         groups = without_error(groups, self.accounted.passive_error, self.accounted.passive_stroke_error)
-        predicted, least_stroke = frictionless, LEAST_STROKE * self.crane.max_displacement
+        predicted, least_stroke = frictionless, TELLING_STROKE * self.crane.max_displacement
         for _ in range(FIXED_POINT_STEPS):
             groups = with_predicted_pressure(groups, predicted + self.accounted.missing_torque, least_stroke)
             point = self._point(load, groups)

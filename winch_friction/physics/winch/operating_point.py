@@ -106,6 +106,9 @@ def fastest_command(speed: float, largest: float) -> float:
 # -- the operating point of a sample, or of each of a run
 # m^3/rad; the feedback of a motor that is swung out reads about zero, of which a power law has no logarithm, and below
 LEAST_DISPLACEMENT = 1e-12
+# of the largest displacement, from which on a torque tells the pressure: at 300 bar each step of the fixed point leaves
+# a fifth of what was wrong (2 K5 p/D); at a fiftieth of the stroke it leaves all, and below it makes more
+TELLING_STROKE = 0.1
 # what of them is a channel of its own: taken from a sample or run as it is, where it is there
 CHANNEL_SIGNALS = tuple(name for name in DEFAULTS if name in WINCH)
 # places for the one point of a sample, which a node needs at every step

@@ -14,6 +14,7 @@ from gap_rig import runs_with
 
 from winch_friction.cli.gap_output import _parameters, _unexplained
 from winch_friction.cli.main import run as winch_friction
+from winch_friction.discrepancy import workflow
 from winch_friction.records.crane_file import load_crane
 from winch_friction.records.model_file import load_model
 from winch_friction.records.runs import write_run
@@ -112,14 +113,28 @@ def test_bad_input_is_one_line(arguments, words, tmp_path, monkeypatch, capsys):
     assert not (tmp_path / "out").exists()
 
 
-def test_blind_trials_open_the_seal_only_afterwards(tmp_path, capsys):
+def test_blind_trials_open_the_seal_only_afterwards(tmp_path, capsys, monkeypatch):
+    """The search is told what the runs show and nothing else, while the seal is promised and not yet open."""
+    seal = tmp_path / "trial_01" / "seal.json"
+    promise = seal.with_suffix(".sha256")
+
+    def searched(runs, crane, model, options):
+        assert len(runs) == 12
+        assert not any("hidden" in str(run.metadata) for run in runs)
+        assert promise.is_file()
+        assert not seal.exists()
+        found = [{"name": "tare_load", "indistinguishable_from": ["churning"]}]
+        return SimpleNamespace(content=lambda: {"verdict": "ambiguous", "effects": found})
+
+    monkeypatch.setattr(workflow, "find_gap", searched)
     assert winch_friction(["gap", "--blind", "1", "--seed", "3", "--out", str(tmp_path), "--json"]) == 0
     told = json.loads(capsys.readouterr().out)
-    seal = (tmp_path / "trial_01" / "seal.json").read_text().strip()
-    promised = (tmp_path / "trial_01" / "seal.sha256").read_text().strip()
-    assert hashlib.sha256(seal.encode()).hexdigest() == promised
-    assert json.loads(seal)["effect"] == told["trials"][0]["hidden"]
-    assert told["right"] == int(told["trials"][0]["hidden"] in told["trials"][0]["found"])
+    (trial,) = told["trials"]
+    assert hashlib.sha256(seal.read_text().strip().encode()).hexdigest() == promise.read_text().strip()
+    assert json.loads(seal.read_text())["effect"] == trial["hidden"] == "churning"
+    assert json.loads(seal.with_name("gap.json").read_text())["verdict"] == trial["verdict"] == "ambiguous"
+    assert trial["found"] == ["tare_load", "churning"]
+    assert told["right"] == 1
 
 
 def test_runs_of_another_crane_without_a_word_of_it_are_refused_for_that(tmp_path, capsys):

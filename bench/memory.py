@@ -46,29 +46,29 @@ def measure(smoke: bool = False) -> list[Row]:
         }
         if smoke:
             del verbs["gap"]  # a few seconds of sea are too short for it
-        rows = [
-            _row(name, peak, size, note) for name, peak in zip(verbs, _peaks([*verbs.values()], smoke), strict=True)
-        ]
-        return [*rows, _of_import(run, Path(folder), smoke), _of_identify(Path(folder), SHORT if smoke else HOUR)]
+        log, importing = _import(run, Path(folder))
+        tests, identify = _identify(Path(folder), SHORT if smoke else HOUR)
+        peaks = iter(_peaks([*verbs.values(), *importing, identify], smoke))
+        rows = [_row(name, next(peaks), size, note) for name in verbs]
+        note = f"of a text of {log:.0f} MB, {run.time[-1]:.0f} s at 50 Hz; its map was proposed at {next(peaks):.0f} MB"
+        return [*rows, _row("import", next(peaks), log, note), _row("identify system", next(peaks), *tests)]
 
 
 def _row(name: str, peak: float, size: float, note: str) -> Row:
     return Row(f"memory: peak of {name}", peak, "MB", note, at_most=300.0 + 2.0 * size)
 
 
-def _of_import(run: Run, folder: Path, smoke: bool) -> Row:
-    """The hour as somebody's text file, with a proposed map of its columns."""
+def _import(run: Run, folder: Path) -> tuple[float, list[tuple[str, ...]]]:
+    """MB of the hour as somebody's text file, and the verbs that propose a map of its columns and import it."""
     log, table = write_run(run, folder / "log.csv"), str(folder / "map.yaml")
-    size = log.stat().st_size / 1e6
     proposal = ("import", str(log), "--propose", "--crane", "crane_150t", "--map", table)
     verb = ("import", str(log), "--map", table, "--out", str(folder / "runs"), "--crane", "crane_150t")
-    proposed, peak = _peaks([proposal, verb], smoke)
-    note = f"of a text of {size:.0f} MB, {run.time[-1]:.0f} s at 50 Hz; its map was proposed at {proposed:.0f} MB"
-    return _row("import", peak, size, note)
+    return log.stat().st_size / 1e6, [proposal, verb]
 
 
-def _of_identify(folder: Path, duration: float) -> Row:
-    """The tests of the shipped example, again and again until they last so many s together."""
+def _identify(folder: Path, duration: float) -> tuple[tuple[float, str], tuple[str, ...]]:
+    """MB of the shipped example's tests, again and again until they last so many s together, what to say of them, and
+    the verb that fits them."""
     tests = [
         read_run(path) for path in sorted((config_directory() / "examples" / "practice_150t").glob("test_*.parquet"))
     ]
@@ -78,7 +78,7 @@ def _of_identify(folder: Path, duration: float) -> Row:
     seconds = again * sum(float(test.time[-1]) for test in tests)
     search = ("--resamples", "2", "--restarts", "1", "--evaluations", "500")  # again and again in the same memory
     verb = ("identify", "system", *map(str, files), "--motor", "a6vm215", "--out", f"{folder}/model.yaml", *search)
-    return _row("identify system", *_peaks([verb]), size, f"of {len(files)} tests, {seconds:.0f} s in {size:.1f} MB")
+    return (size, f"of {len(files)} tests, {seconds:.0f} s in {size:.1f} MB"), verb
 
 
 def _repeated(run: Run, times: int) -> Run:
@@ -89,7 +89,7 @@ def _repeated(run: Run, times: int) -> Run:
     return replace(run, columns=columns, aside={})
 
 
-def _peaks(verbs: list[tuple[str, ...]], together: bool = False) -> list[float]:
+def _peaks(verbs: list[tuple[str, ...]], together: bool) -> list[float]:
     """MB at the peak of each verb in a process of its own; `together` in one after the other, for a smoke run."""
     each = [verbs] if together else [[verb] for verb in verbs]
     said = [

@@ -30,7 +30,7 @@ CAUSES = ("low_displacement_loss", "viscosity_temperature", "pressure_offset", "
           "sheave_bending", "swivel_offset", "churning")  # fmt: skip
 NULLS = 2
 FIRST_SEED = 700
-LENGTH, SMOKE = 0.5, 0.3  # of runs of 170 ... 240 s
+LENGTH, SMOKE = 0.5, 0.15  # of runs of 170 ... 240 s
 LARGEST_SET = 3  # a set of more names is no answer
 MOST_NAMES = 8  # the stepwise selection ends there at the latest
 THRESHOLDS = np.geomspace(0.003, 0.3, 7)  # of STLSQ, in columns of unit size; BIC chooses
@@ -60,7 +60,7 @@ def datasets(smoke: bool) -> list[tuple[str, list[Run]]]:
                 for k, columns in enumerate(
                     make_dataset(
                         FIRST_SEED + seed, "quiet", [(cause, 1.0)] if cause else [], length=SMOKE if smoke else LENGTH
-                    )[: 6 if smoke else None]
+                    )[: 3 if smoke else None]
                 )
             ],
         )

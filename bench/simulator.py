@@ -52,5 +52,6 @@ def _first_step(repeats: int) -> float:
         done = subprocess.run([sys.executable, "-c", FIRST_STEP], capture_output=True, check=True, env=as_installed())
         return float(done.stdout)
 
-    once()  # keeps the bytecode of what is imported
+    if repeats > 1:
+        once()  # keeps the bytecode of what is imported
     return median(once() for _ in range(repeats))

@@ -45,8 +45,8 @@ def measure(smoke: bool = False) -> list[Row]:
 def _gap_rows(smoke: bool) -> list[Row]:
     """The same of `gap` over runs of one length, and over the candidates that it has to choose from."""
     crane, model = load_crane("crane_150t"), load_model("a6vm215_crane2")
-    counts = RUNS[:1] if smoke else RUNS
-    scenario = load_scenario("ahc_irregular").override({"duration": RUN})
+    counts = (1,) if smoke else RUNS
+    scenario = load_scenario("ahc_irregular").override({"duration": RUN / 2 if smoke else RUN})
     runs = [simulate(scenario, crane, model, seed=k, hidden=HIDDEN).run for k in range(counts[-1])]
     every = tuple(each for each in all_candidates() if each.regime == MOVING)
     half = tuple(each for k, each in enumerate(every) if k % 2 == 0 or each.name == HIDDEN[0][0])

@@ -7,7 +7,6 @@ SECONDS = {
     "discrepancy/test_workflow.py": 26,
     "commissioning/test_commissioning.py": 20,
     "discrepancy/test_gap_cli.py": 18,
-    "discrepancy/test_again.py": 16,
     "campaign_rig/test_rig.py": 15,
     "fleet/test_fleet_verb.py": 14,
     "browser/test_dashboard.py": 13,

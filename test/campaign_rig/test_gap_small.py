@@ -1,11 +1,14 @@
 """What counts as more than the prior's own uncertainty."""
 
+import pytest
+
 from campaign.gap_cases import Case
 from campaign.gap_report import _small
 from campaign.gap_report_drawn import drawn_worlds
 from campaign.gap_small import beyond_prior, counted
 
 
+@pytest.mark.long
 def test_a_brake_that_k4_can_be_is_inside_the_prior_and_a_tare_is_not():
     brake, tare = (
         beyond_prior(Case("single", ((name, 0.3),), "quiet", 21), 0.15) for name in ("brake_drag", "tare_load")

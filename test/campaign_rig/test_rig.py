@@ -17,7 +17,7 @@ from winch_friction.records.crane_file import load_crane
 from winch_friction.records.model_file import load_model
 
 RIG = Path(rig.__file__).parent
-SHORT = 0.2  # of a campaign's runs
+SHORT = 0.11  # of a campaign's runs; less is no run
 
 
 def test_the_rig_imports_nothing_of_the_package():
@@ -45,7 +45,7 @@ def _plateau_residual(columns, crane, model):
 
 @pytest.mark.parametrize("flavour", [name for name, style in rig.FLAVOURS.items() if "hook_load" in style.channels])
 def test_without_an_effect_the_balance_closes(flavour, crane_150t, crane2_model):
-    runs = rig.make_dataset(5, flavour, truth=CRANE2)
+    runs = rig.make_dataset(5, flavour, truth=CRANE2, length=0.6)
     means = [_plateau_residual(columns, crane_150t, crane2_model).mean() for columns in runs[:8]]
     assert np.abs(means).max() < 4.0, means  # of 300-800 N m of friction
 
@@ -66,7 +66,7 @@ def test_a_run_holds_what_the_contract_names():
 
 
 def test_a_seed_is_one_crane_and_another_seed_another():
-    first, again, other = rig.make_dataset(7, "paper"), rig.make_dataset(7, "paper"), rig.make_dataset(8, "paper")
+    first, again, other = (rig.make_dataset(seed, "paper", length=SHORT) for seed in (7, 7, 8))
     assert all(np.array_equal(first[0][name], again[0][name]) for name in first[0])
     assert len(first[0]["time"]) != len(other[0]["time"])
 
@@ -104,7 +104,10 @@ def test_the_oil_follows_walther():
 
 @pytest.mark.parametrize("units", ["plant", "si"])
 def test_files_carry_the_columns(units, tmp_path):
-    runs = [{name: column[:50] for name, column in columns.items()} for columns in rig.make_dataset(10, "paper")]
+    runs = [
+        {name: column[:50] for name, column in columns.items()}
+        for columns in rig.make_dataset(10, "paper", length=SHORT)
+    ]
     paths = rig.write_csv(tmp_path, runs, units)
     header = paths[0].read_text().splitlines()[0]
     assert ("motor_speed [rpm]" in header) == (units == "plant")
@@ -131,7 +134,7 @@ def test_every_cause_has_three_laws_and_one_that_the_package_lacks():
     ],
 )
 def test_every_law_changes_what_is_logged(effect):
-    runs = (rig.make_dataset(21, rig.DRAWN, [(effect, size)], length=0.15) for size in (0.0, 1.0))
+    runs = (rig.make_dataset(21, rig.DRAWN, [(effect, size)], length=SHORT) for size in (0.0, 1.0))
     assert _difference(*runs) > 0.0
 
 
@@ -152,7 +155,7 @@ def test_drawn_cranes_differ_in_all_that_a_crane_file_holds():
     for name in ("gear", "radii", "max_displacement", "motors", "inertia", "wire_mass", "seed"):
         assert len({getattr(world, name) for world in worlds}) > 4, name
     rates = {
-        round(1 / np.median(np.diff(rig.make_dataset(s, rig.DRAWN, length=0.1)[0]["time"]))) for s in range(40, 52)
+        round(1 / np.median(np.diff(rig.make_dataset(s, rig.DRAWN, length=SHORT)[0]["time"]))) for s in range(40, 52)
     }
     assert min(rates) <= 25, rates
     assert max(rates) >= 100, rates

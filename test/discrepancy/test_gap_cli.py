@@ -14,6 +14,8 @@ from gap_rig import runs_with
 
 from winch_friction.cli.gap_output import _parameters, _unexplained
 from winch_friction.cli.main import run as winch_friction
+from winch_friction.discrepancy import workflow
+from winch_friction.physics.signals import Run
 from winch_friction.records.crane_file import load_crane
 from winch_friction.records.model_file import load_model
 from winch_friction.records.runs import write_run
@@ -23,8 +25,8 @@ OWN_EFFECT = """
 from winch_friction.physics.friction import Parameter, Scope, Term, register
 from winch_friction.physics.friction.symbols import wire_out
 
-q = Parameter("q_wire_guide", "N*m/m", 0.01, upper=10.0, doc="drag of the wire guide per metre paid out")
-register(Term("wire_guide", q.symbol * wire_out, (q,), Scope.SYSTEM, "a user's own", "gear and drum"))
+q = Parameter("q_wire_guide", "N*m/m", 0.1, upper=10.0, doc="drag of the wire guide per metre paid out")
+register(Term("wire_guide", q.symbol * wire_out, (q,), Scope.SHAFT, "a user's own", "gear and drum"))
 """
 
 
@@ -79,20 +81,30 @@ def test_the_page_holds_all_that_it_needs(folder):
     assert re.findall(r"""(?:src|href)=["']?(?:https?:|//)[^"'> ]*|url\(["']?(?:https?:|//)|@import""", page) == []
 
 
+def with_a_wire_guide(number):
+    """A minute of an electric drive whose wire guide drags by 0.2 N m per metre paid out."""
+    rng, time = np.random.default_rng(number), 0.02 * np.arange(3000)
+    speed = 0.15 * np.sin(2.0 * np.pi * time / (6 + number)) * np.sin(2.0 * np.pi * time / 37 + number)
+    out = 10.0 + 8.0 * number + 30.0 * np.abs(np.sin(2.0 * np.pi * time / (50 + number)))
+    torque = 95.109 * np.gradient(speed, time) + 203.5 * speed + 0.2 * out * np.sign(speed)
+    columns = {"motor_torque": torque + rng.normal(0.0, 0.3, len(time)), "hook_load": 0.0 * time, "wire_out": out}
+    return Run(f"run_{number}.csv", {"time": time, "motor_speed": speed, **columns})
+
+
 def test_a_users_own_effect_needs_one_declaration(tmp_path):
     own = tmp_path / "own.py"
     own.write_text(OWN_EFFECT)
-    for run in runs_with(4030, "rough", ("wire_out_drag", 1.0)):
-        write_run(run, tmp_path / run.name)
+    paths = [str(write_run(with_a_wire_guide(k), tmp_path / f"run_{k}.csv")) for k in range(5)]
+    known = ["--crane", "emps", "--model", "emps_viscous", "--effects", str(own)]
     script = (
         "import sys; from winch_friction.cli.main import run; "
-        f"sys.exit(run(['gap', *{[str(p) for p in sorted(tmp_path.glob('run_*.csv'))]}, '--effects', '{own}', "
-        f"'--out', '{tmp_path / 'out'}', '--json', '--no-report']))"
+        f"sys.exit(run(['gap', *{paths}, *{known}, '--out', '{tmp_path / 'out'}', '--json', '--no-report']))"
     )  # a process of its own: the registry of terms is this process's
     done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
-    content = json.loads(done.stdout)
-    assert [effect["name"] for effect in content["effects"]] == ["wire_guide"]
+    (effect,) = json.loads(done.stdout)["effects"]
+    assert effect["name"] == "wire_guide"
+    assert effect["parameters"]["q_wire_guide"]["value"] == pytest.approx(0.2, rel=0.02)
 
 
 @pytest.mark.parametrize(
@@ -112,14 +124,28 @@ def test_bad_input_is_one_line(arguments, words, tmp_path, monkeypatch, capsys):
     assert not (tmp_path / "out").exists()
 
 
-def test_blind_trials_open_the_seal_only_afterwards(tmp_path, capsys):
+def test_blind_trials_open_the_seal_only_afterwards(tmp_path, capsys, monkeypatch):
+    """The search is told what the runs show and nothing else, while the seal is promised and not yet open."""
+    seal = tmp_path / "trial_01" / "seal.json"
+    promise = seal.with_suffix(".sha256")
+
+    def searched(runs, crane, model, options):
+        assert len(runs) == 12
+        assert not any("hidden" in str(run.metadata) for run in runs)
+        assert promise.is_file()
+        assert not seal.exists()
+        found = [{"name": "tare_load", "indistinguishable_from": ["churning"]}]
+        return SimpleNamespace(content=lambda: {"verdict": "ambiguous", "effects": found})
+
+    monkeypatch.setattr(workflow, "find_gap", searched)
     assert winch_friction(["gap", "--blind", "1", "--seed", "3", "--out", str(tmp_path), "--json"]) == 0
     told = json.loads(capsys.readouterr().out)
-    seal = (tmp_path / "trial_01" / "seal.json").read_text().strip()
-    promised = (tmp_path / "trial_01" / "seal.sha256").read_text().strip()
-    assert hashlib.sha256(seal.encode()).hexdigest() == promised
-    assert json.loads(seal)["effect"] == told["trials"][0]["hidden"]
-    assert told["right"] == int(told["trials"][0]["hidden"] in told["trials"][0]["found"])
+    (trial,) = told["trials"]
+    assert hashlib.sha256(seal.read_text().strip().encode()).hexdigest() == promise.read_text().strip()
+    assert json.loads(seal.read_text())["effect"] == trial["hidden"] == "churning"
+    assert json.loads(seal.with_name("gap.json").read_text())["verdict"] == trial["verdict"] == "ambiguous"
+    assert trial["found"] == ["tare_load", "churning"]
+    assert told["right"] == 1
 
 
 def test_runs_of_another_crane_without_a_word_of_it_are_refused_for_that(tmp_path, capsys):

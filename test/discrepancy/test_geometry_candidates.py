@@ -83,6 +83,7 @@ def test_every_layer_may_have_an_error_of_its_own_where_there_are_three():
     assert {each.layers for each in law.corrects(found, Shape(""), sides)} == {(1,), (4,)}
 
 
+@pytest.mark.long
 def test_a_load_that_gathers_over_the_days_is_a_tare():
     """Mud on the block by the dates of the runs: `unexplained`, with the oil's temperature first."""
     runs = runs_with(33, "quiet")

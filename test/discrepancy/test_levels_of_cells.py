@@ -46,9 +46,8 @@ def told(result):
     ]
 
 
-@pytest.mark.parametrize(
-    ("effect", "times"), [(None, 1.0), pytest.param("port_turbulence", 2.0, marks=pytest.mark.long)]
-)
+@pytest.mark.long  # what each step of it decides is asked below
+@pytest.mark.parametrize(("effect", "times"), [(None, 1.0), ("port_turbulence", 2.0)])
 def test_what_is_missing_is_told_beside_levels_of_load_cells(effect, times):
     """Two outside examiners in a row had such cells: of ten of their winches on which nothing was missing four were
     `unexplained`, and a loss that was hidden beside them had no name."""

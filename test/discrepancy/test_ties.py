@@ -113,6 +113,7 @@ def test_what_is_one_with_the_finding_on_any_runs_takes_only_the_room_that_is_le
     assert any("without room in a set" in note and "load_scale" in note for note in said["answer"]["notes"])
 
 
+@pytest.mark.long
 def test_hook_and_wire_come_physical_and_with_their_deviations():
     crane, model = load_crane("crane_150t"), load_model("a6vm215_crane2")
     runs = [_light(run) for run in runs_with(4063, "paper")]

@@ -65,12 +65,12 @@ def test_a_folder_of_cranes_is_searched_and_a_bad_file_stops_nobody(cranes, tmp_
 
 def test_what_is_done_is_not_done_again(cranes, tmp_path, capsys, monkeypatch):
     one = cranes / "north"
-    fleet(capsys, "replay", one, "--out", tmp_path, "--workers", 0)
+    fleet(capsys, "check", one, "--out", tmp_path, "--workers", 0)
     first = (tmp_path / "fleet.jsonl").read_text()
-    _, again = fleet(capsys, "replay", one, "--out", tmp_path, "--workers", 0)
+    _, again = fleet(capsys, "check", one, "--out", tmp_path, "--workers", 0)
     assert (tmp_path / "fleet.jsonl").read_text() == first
     assert len(again["outcomes"]) == 3
-    fleet(capsys, "replay", one, "--out", tmp_path, "--workers", 0, "--anew")
+    fleet(capsys, "check", one, "--out", tmp_path, "--workers", 0, "--anew")
     assert len((tmp_path / "fleet.jsonl").read_text().splitlines()) == 6
 
 

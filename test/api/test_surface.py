@@ -84,6 +84,21 @@ def test_an_argument_of_another_kind_is_refused_with_what_to_give(call, said):
     assert str(refused.value) == said
 
 
+def test_a_file_that_is_there_is_replaced_where_that_is_said_alone(tmp_path):
+    """`write_run` of a log that was read, under its own name, took the columns that the contract does not know."""
+    log, model = tmp_path / "log.csv", tmp_path / "my_crane.yaml"
+    run, seed = wf.from_frame(NO_LOAD), wf.load_model("emps_viscous")
+    for path, write in (
+        (log, lambda **o: wf.write_run(run, log, **o)),
+        (model, lambda **o: wf.save_model(seed, model, **o)),
+    ):
+        path.write_text("somebody's")
+        with pytest.raises(wf.InputError, match=f"{path.name}: exists already; give another name, or overwrite=True"):
+            write()
+        assert path.read_text() == "somebody's"
+        assert write(overwrite=True).read_text() != "somebody's"
+
+
 def test_a_default_is_none_and_what_lacks_is_said_by_python():
     assert wf.check([], wf.load_crane("emps"), None).plausible
     with pytest.raises(TypeError, match="torque.* missing 2 required positional arguments"):

@@ -8,7 +8,11 @@ import pytest
 import winch_friction as wf
 from winch_friction.cli import names
 from winch_friction.cli.main import run
+from winch_friction.physics.channels import CM3_PER_REV, RPM
+from winch_friction.physics.signals import GroupSample, Sample
+from winch_friction.records.bag_write import MESSAGES, BagWriter
 from winch_friction.records.strict_yaml import config_directory
+from winch_friction.records.topics import crane_topics
 
 
 def test_a_crane_that_only_a_models_file_knows_is_asked_for(tmp_path, capsys):
@@ -98,6 +102,30 @@ def test_a_run_is_drawn(tmp_path, capsys):
     assert "figure" in (tmp_path / "a.html").read_text()
     assert run(["plot", str(tmp_path), "--out", str(tmp_path / "b.html"), "--json"]) == 0  # the folder of runs
     assert json.loads(capsys.readouterr().out)["channels"]
+
+
+def test_which_winch_of_a_bag_is_looked_at_is_said_by_its_namespace(tmp_path, capsys):
+    """`plot` and `compare` alone of those that read runs could not be told, and pointed to a verb that makes a file."""
+    crane, bag, page = wf.load_crane("crane_150t"), str(tmp_path / "deck"), str(tmp_path / "a.html")
+    topics = crane_topics(crane, ("main",))
+    group = {"main": GroupSample(130e5, 25e5, 215 * CM3_PER_REV)}
+    with BagWriter(tmp_path / "deck") as writer:
+        for winch, speed in (("port", 10.0), ("starboard", 20.0)):
+            for k in range(60):
+                sample = Sample(0.02 * k, speed, hook_load=55e3, groups=group)
+                for topic, message in topics.encode(sample, MESSAGES):
+                    writer.write(f"/{winch}/{topic}", message, sample.time)
+    for verb in (
+        ["plot", bag, "--out", page, "--crane", "crane_150t"],
+        ["compare", "a6vm215_crane1", "a6vm215_crane2", bag],
+    ):
+        assert run(verb) == 2
+        assert "several winches: /port" in capsys.readouterr().err
+        assert run([*verb, "--namespace", "starboard", "--json"]) == 0
+        said = json.loads(capsys.readouterr().out)
+        speeds = {row["channel"]: row["largest"] for row in said.get("channels", ())}
+        rpm = speeds["motor_speed"] if speeds else said["rows"][0]["at [rpm]"]
+        assert rpm == pytest.approx(20.0 / RPM, rel=1e-2)
 
 
 def test_what_a_list_says_of_a_scenario_is_a_whole_sentence(capsys):

@@ -147,3 +147,20 @@ def test_a_displacement_that_nobody_measured_is_no_negative_one(displacement, ne
     view = SimpleNamespace(groups={"main": SimpleNamespace(displacement=np.array(displacement))})
     assert _negative(view, "main") is negative
     assert not _negative(view, "active")
+
+
+@pytest.mark.parametrize(
+    ("groups", "said"),
+    [
+        ({"main": 11, "active": 3, "passive": 8}, []),
+        ({"main": 10, "active": 3, "passive": 8},
+         ["crane 'crane_150t': main has 10 motors, active and passive 11: is each counted once?"]),
+        ({"main": 10}, []),
+        ({"active": 3, "passive": 8}, []),
+    ],
+)  # fmt: skip
+def test_motors_that_a_crane_file_counts_in_two_ways_are_asked_for(groups, said):
+    """A motor of eleven less in normal winch mode was plausible, and the runs of that mode 9 % off."""
+    found = quick_check([], replace(CRANE, groups=groups))
+    assert [each.sentence for each in found] == said
+    assert not any(each.contradicts for each in found)

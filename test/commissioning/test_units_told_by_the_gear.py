@@ -86,3 +86,20 @@ def test_a_mistake_that_closes_next_to_nothing_is_no_hint(left, hint):
     )  # fmt: skip
     (found,) = likeliest_mistake(diagnosis, SimpleNamespace(drive=SimpleNamespace(hydraulic=True)))
     assert ("nearest: the ports are swapped" in found.sentence) is hint
+
+
+@pytest.mark.parametrize(("holding", "off"), [(("r1",), "r1 is off by 40 N m"), (("r1", "r2"), "r2 is off by 30 N m")])
+def test_the_balance_that_proves_a_mistake_is_one_of_the_runs_that_hold_it(holding, off):
+    """Of one run of twelve with its ports exchanged: "the torque balance of run_11 is off by 527 N m", a sound one."""
+    closures = [
+        SimpleNamespace(run=run, score=score, before=before)
+        for run, score, before in (("r1", 90.0, 40.0), ("r2", 200.0, 30.0), ("r3", 1.0, 527.0))
+    ]
+    swapped = SimpleNamespace(words="the ports are swapped", cause="ports", channel="", factor=np.nan)
+    best = SimpleNamespace(mistake=swapped, score=3.0, scores=(1.0,) * 3, runs=holding)
+    diagnosis = SimpleNamespace(
+        best=best, contradicting=holding, names=("r1", "r2", "r3"), scores=(90.0, 200.0, 1.0), score=291.0,
+        closures=closures, hypotheses=(best,),
+    )  # fmt: skip
+    (found,) = likeliest_mistake(diagnosis, SimpleNamespace(drive=SimpleNamespace(hydraulic=True)))
+    assert f"(the torque balance of {off} RMS)" in found.sentence

@@ -387,3 +387,17 @@ def test_what_two_laws_cost_together_is_as_sure_as_they_are_together():
     held = np.concatenate([lost[run == k] - speed[run == k] * (speed[run != k] @ lost[run != k]) /
                            (speed[run != k] @ speed[run != k]) for k in range(RUNS)])  # fmt: skip
     assert found.before == pytest.approx(np.sqrt(np.mean(held**2)))
+
+
+@pytest.mark.parametrize(("swing", "segments"), [(0.0, False), (5e5, True)])
+def test_a_run_whose_pressure_never_moves_says_nothing_of_air(swing, segments):
+    """A record at rest, to the last digit, among eleven of a winch at work ended `gap` in a division by zero."""
+    time = 0.02 * np.arange(2000)
+    columns = {
+        "time": time, "motor_speed": 0.0 * time, "speed_reference": 0.0 * time, "main.displacement": 3e-5 + 0.0 * time,
+        "main.pressure_a": 100e5 + swing * np.sin(time), "main.pressure_b": 25e5 + 0.0 * time,
+    }  # fmt: skip
+    prepared = SimpleNamespace(groups=(SimpleNamespace(name="main", count=11.0, balances=True),))
+    found = flow_balance._sums(Run("rest", columns), prepared, 0, slice(0, 2000))
+    assert bool(len(found)) is segments
+    assert np.isfinite(found).all()

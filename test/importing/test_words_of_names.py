@@ -125,6 +125,12 @@ def test_of_words_that_are_alike_the_nearest_are_meant():
         ("motor_speed", "passive speed", 0.75 + 0.15),  # which motors
         ("motor_speed", "drum speed", (0.75 + 0.15) * 0.25),  # against it
         ("motor_speed", "valve speed", (0.75 + 0.15) * 0.25),  # beside the winch
+        (
+            "motor_speed",
+            "/simulator/truth speed",
+            (0.75 + 0.15) * 0.93 * 0.25,
+        ),  # what a simulator knows, nobody measured
+        ("motor_speed", "/winch/joint_states speed", 0.75 + 0.15 + 0.1),  # ROS's name of what is measured of joints
         ("motor_speed", "current speed", (0.75 + 0.15) * 0.5),  # another quantity
         ("motor_speed", "n", 0.75 * 0.9 + 0.15),
         ("motor_speed", "load", 0.0),

@@ -284,10 +284,11 @@ def test_a_loaded_model_is_named_with_whoever_will_replace_it(follow: bool, publ
     node = bare(CompensatorNode, own=CompensatorNodeOptions(follow_model_topic=follow))
     node._files = Given(get=lambda *given: calls.append(("read", given[0], given[2])) or Given(name="mine"))
     node.load_terms = lambda: calls.append("terms")
-    node.service = Given(load_model=lambda model: calls.append(("loaded", model.name)))
+    apart = "beside 'theirs' it lacks stribeck" if follow else ""
+    node.service = Given(load_model=lambda model: calls.append(("loaded", model.name)) or apart)
     node._models = None if publishers is None else Given(get_publisher_count=lambda: publishers)
     node.told_to_end = lambda: False
-    assert node._load_model() == f"model 'mine' in use{until}"
+    assert node._load_model() == f"model 'mine' in use{apart and f'; {apart}'}{until}"
     assert calls == [("read", node._read_model, node.told_to_end), "terms", ("loaded", "mine")]
 
 

@@ -1,5 +1,6 @@
 """Replay: over a run, over its bag and live, the same samples give the same outputs."""
 
+import itertools
 import json
 from dataclasses import replace
 
@@ -7,6 +8,7 @@ import numpy as np
 import pytest
 from own_term_files import forgotten, own_model, own_terms
 
+import winch_friction as wf
 from winch_friction.cli import main
 from winch_friction.compensation import CompensatorConfig, FeedforwardCompensator
 from winch_friction.estimation import EstimatorConfig, FrictionEstimator
@@ -124,6 +126,29 @@ def test_another_winch_in_the_bag_neither_teaches_nor_is_compared(tmp_path, hear
     assert port.live == ()
     assert [each.node for each in starboard.live] == ["compensator"]
     assert np.abs(starboard.compensator["friction_torque"] - alone["friction_torque"]).max() > 10.0
+
+
+def test_the_python_call_tells_two_winches_apart_and_reads_a_bag_as_its_parameter_file_says(
+    tmp_path, heard, crane_150t, crane2_model
+):
+    """`replay(..., params_file=)` passed over the joints that the file names, and could not be told a winch of two."""
+    topics, hold = crane_topics(crane_150t, heard.groups), InputHold(heard.groups)
+    with BagWriter(tmp_path / "deck") as bag:
+        for sample in itertools.islice(hold.samples(heard), 300, 400):
+            for winch, times in (("port", 1.0), ("starboard", 0.5)):
+                own = replace(sample, motor_speed=times * sample.motor_speed)
+                for topic, message in topics.encode(own, MESSAGES):
+                    bag.write(f"/{winch}/{topic}", message, sample.time)
+    (tmp_path / "nodes.yaml").write_text("/**:\n  ros__parameters: {speed_joint: vinsj}\n")
+    given = tmp_path / "deck", crane_150t, crane2_model
+    with pytest.raises(InputError, match="several winches.*--namespace"):
+        wf.replay(*given)
+    port, starboard = (wf.replay(*given, namespace=each) for each in ("port", "/starboard"))
+    assert np.abs(starboard.estimator["speed"]).max() < 0.9 * np.abs(port.estimator["speed"]).max()
+    with pytest.raises(InputError, match="vinsj"):
+        wf.replay(*given, namespace="port", params_file=tmp_path / "nodes.yaml")
+    with pytest.raises(InputError, match="namespace 'port': a run is of one winch; leave it out"):
+        wf.replay(heard, crane_150t, crane2_model, namespace="port")
 
 
 def test_a_text_that_is_no_model_is_refused_as_by_the_node(tmp_path, heard, crane_150t, crane2_model):

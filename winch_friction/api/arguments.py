@@ -5,6 +5,7 @@ from functools import wraps
 from inspect import signature
 from numbers import Integral
 from os import PathLike
+from pathlib import Path
 from typing import Any, ParamSpec, TypeVar
 
 from winch_friction.physics.errors import InputError
@@ -45,6 +46,15 @@ def checked(function: Callable[P, R]) -> Callable[P, R]:
         return function(*arguments, **named)
 
     return called
+
+
+def vacant(path: "str | PathLike[str]", overwrite: bool) -> Path:
+    """The path, where nothing is yet, or what is there may go: a log that was read, and is written with fewer columns
+    under its own name, is never logged again."""
+    place = Path(path)
+    if place.is_file() and not overwrite:
+        raise InputError(f"{place}: exists already; give another name, or overwrite=True to replace it")
+    return place
 
 
 def _check(where: str, name: str, value: Any) -> None:

@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from winch_friction.api.arguments import checked
+from winch_friction.api.arguments import checked, vacant
 from winch_friction.physics.friction.model import FrictionModel
 from winch_friction.physics.winch.crane import Crane
 
@@ -40,8 +40,10 @@ def load_model(name: str | Path) -> FrictionModel:
 
 
 @checked
-def save_model(model: FrictionModel, path: str | Path) -> Path:
+def save_model(model: FrictionModel, path: str | Path, *, overwrite: bool = False) -> Path:
     """Write a model file, atomically; nodes, simulator and every verb read it. Returns its path.
+
+    A file that is there, with what somebody has noted in it, is replaced with `overwrite` alone. Raises `InputError`.
 
     >>> import tempfile, winch_friction as wf
     >>> model = wf.load_model("a6vm215_crane2").with_values({"C3": 80.0})
@@ -51,4 +53,4 @@ def save_model(model: FrictionModel, path: str | Path) -> Path:
     """
     from winch_friction.records.model_file import save_model as save
 
-    return save(model, Path(path))
+    return save(model, vacant(path, overwrite))

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from winch_friction.api.arguments import checked
+from winch_friction.api.arguments import checked, vacant
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.signals import Run
 from winch_friction.physics.winch.crane import Crane
@@ -34,8 +34,10 @@ def read_run(path: str | Path, crane: Crane | None = None, **bag_options: Any) -
 
 
 @checked
-def write_run(run: Run, path: str | Path) -> Path:
+def write_run(run: Run, path: str | Path, *, overwrite: bool = False) -> Path:
     """Write a run by suffix: .csv, .parquet, .mcap, .db3 or a bag folder; atomically, SI units in the headers.
+
+    A file that is there is replaced with `overwrite` alone, a bag never. Raises `InputError`.
 
     >>> import tempfile, winch_friction as wf
     >>> run = wf.from_frame({"time": [0.0, 0.1], "motor_speed [rpm]": [60.0, 90.0], "motor_torque": [5.0, 6.0]}, "a")
@@ -45,7 +47,7 @@ def write_run(run: Run, path: str | Path) -> Path:
     """
     from winch_friction.records.runs import write_run as write
 
-    return write(run, path)
+    return write(run, vacant(path, overwrite))
 
 
 def from_frame(data: Any, name: str = "frame", crane: Crane | None = None) -> Run:

@@ -48,11 +48,12 @@ def simulate(
 
 @checked
 def replay(recording: Run | str | Path, crane: Crane, model: FrictionModel, *, learn: bool = True,
-           params_file: str | Path | None = None) -> Replay:  # fmt: skip
+           params_file: str | Path | None = None, namespace: str = "") -> Replay:  # fmt: skip
     """A run, run file or bag through the nodes' own step: what would have been fed forward, and what was learned.
 
     `model` is the seed; with `learn` the compensator takes over what the estimator learns; `params_file` is a
-    ROS parameter file of the nodes (their defaults without it). Raises `InputError`.
+    ROS parameter file of the nodes (their defaults without it), which also says what a bag's topics mean; `namespace`
+    tells which of several winches is meant, in a bag and in that file. Raises `InputError`.
 
     >>> import winch_friction as wf
     >>> crane, model = wf.load_crane("crane_150t"), wf.load_model("a6vm215_crane2")
@@ -63,13 +64,19 @@ def replay(recording: Run | str | Path, crane: Crane, model: FrictionModel, *, l
     >>> bool(result.compensator["friction_torque"].max() > 100.0)  # N m
     True
     """
+    from winch_friction.records.input_mapping import bag_options_of
+    from winch_friction.records.runs import is_bag
     from winch_friction.replay.recording import replay_recording, replay_run
     from winch_friction.replay.settings import ReplaySettings, settings_from_file
 
-    settings = settings_from_file(Path(params_file)) if params_file else None
+    of_bag = not isinstance(recording, Run) and is_bag(Path(recording))
+    if namespace and not (params_file or of_bag):
+        raise InputError(f"replay: namespace '{namespace}': a run is of one winch; leave it out")
+    options = bag_options_of(Path(params_file) if params_file else None, namespace) if of_bag else {}
+    settings = settings_from_file(Path(params_file), namespace) if params_file else None
     if isinstance(recording, Run):
         return Replay(replay_run(recording, crane, model, settings or ReplaySettings(), learn=learn), model)
-    return Replay(replay_recording(recording, crane, model, settings, learn=learn), model)
+    return Replay(replay_recording(recording, crane, model, settings, learn=learn, **options), model)
 
 
 @checked

@@ -8,7 +8,7 @@ import typer
 from winch_friction.cli.console import show_json, show_table
 from winch_friction.cli.inputs import PAGE, load_terms, refuse_existing, refuse_other_kind, show_warnings
 from winch_friction.cli.names import complete_crane, complete_model
-from winch_friction.cli.optional import OptionalPath, OptionalPaths, Overwrite
+from winch_friction.cli.optional import Namespace, OptionalPath, OptionalPaths, Overwrite
 from winch_friction.physics.errors import InputError, Problems
 
 CERTAIN = 2.0  # standard deviations from which a difference is more than what the models do not know of themselves
@@ -26,6 +26,8 @@ def command(
     ] = "",
     out: Annotated[OptionalPath, typer.Option(help="Write a page (.html) with curves and differences.")] = None,
     terms_file: Annotated[OptionalPath, typer.Option(help="Python file with friction terms of your own.")] = None,
+    params_file: Annotated[OptionalPath, typer.Option(help="ROS parameter file: joints and fields of a bag.")] = None,
+    namespace: Namespace = "",
     overwrite: Overwrite = False,
     as_json: Annotated[bool, typer.Option("--json", help="As JSON.")] = False,
 ) -> None:
@@ -40,6 +42,7 @@ def command(
     from winch_friction.cli.inputs import run_paths
     from winch_friction.cli.show import curve_crane, say_beyond
     from winch_friction.physics.winch.model_curve import usual_loads
+    from winch_friction.records.input_mapping import bag_options_of
     from winch_friction.records.model_file import load_model
 
     load_terms(terms_file)
@@ -56,7 +59,7 @@ def command(
     if runs:
         if out is not None:
             raise InputError("compare: the page shows the grid; leave out the runs, or leave out --out")
-        content = _on_runs(one, two, machine, run_paths(runs))
+        content = _on_runs(one, two, machine, run_paths(runs), bag_options_of(params_file, namespace))
     else:
         masses = _loads(loads) if loads else [each / 1e3 for each in usual_loads(machine)]
         say_beyond("--loads", masses, machine)
@@ -159,7 +162,7 @@ def _said(first: str, second: str, rows: list[dict[str, Any]]) -> str:
     )
 
 
-def _on_runs(one: Any, two: Any, crane: Any, paths: list[Path]) -> dict[str, Any]:
+def _on_runs(one: Any, two: Any, crane: Any, paths: list[Path], options: dict[str, Any]) -> dict[str, Any]:
     import numpy as np
 
     from winch_friction.physics.corrections import corrected
@@ -169,7 +172,7 @@ def _on_runs(one: Any, two: Any, crane: Any, paths: list[Path]) -> dict[str, Any
 
     rows: list[dict[str, Any]] = []
     loaded = any("drum_torque" in term.reads for model in (one, two) for term in model.terms)
-    for run in read_runs(paths, crane):
+    for run in read_runs(paths, crane, **options):
         show_warnings(run.warnings)
         if "hook_load" not in run and loaded:
             raise InputError(f"{run.name}: compare needs the column 'hook_load'")

@@ -8,7 +8,7 @@ import typer
 from winch_friction.cli.console import show_json, show_table
 from winch_friction.cli.inputs import load_terms, show_warnings
 from winch_friction.cli.names import complete_crane, complete_model
-from winch_friction.cli.optional import OptionalPath, Overwrite
+from winch_friction.cli.optional import Namespace, OptionalPath, Overwrite
 
 
 def command(
@@ -21,6 +21,8 @@ def command(
         str, typer.Option(help="Model whose friction is drawn beside.", autocompletion=complete_model)
     ] = "",
     terms_file: Annotated[OptionalPath, typer.Option(help="Python file with friction terms of your own.")] = None,
+    params_file: Annotated[OptionalPath, typer.Option(help="ROS parameter file: joints and fields of a bag.")] = None,
+    namespace: Namespace = "",
     overwrite: Overwrite = False,
     as_json: Annotated[bool, typer.Option("--json", help="Ranges of every channel as JSON.")] = False,
 ) -> None:
@@ -34,6 +36,7 @@ def command(
     """
     from winch_friction.cli.inputs import PAGE, read_all, read_inputs, refuse_existing, refuse_other_kind, run_paths
     from winch_friction.physics.errors import InputError
+    from winch_friction.records.input_mapping import bag_options_of
     from winch_friction.report.run_page import channel_rows, write_run_page
 
     if model and not crane:
@@ -42,10 +45,11 @@ def command(
     refuse_other_kind(out, PAGE, "a page")
     refuse_existing(overwrite, out)
     paths = run_paths(runs)
+    options = bag_options_of(params_file, namespace)
     if crane:
-        read, machine, drawn = read_inputs(paths, crane, model)
+        read, machine, drawn = read_inputs(paths, crane, model, options)
     else:
-        read, machine, drawn = read_all(paths, None), None, None
+        read, machine, drawn = read_all(paths, None, **options), None, None
     for run in read:
         show_warnings(run.warnings)
     page = write_run_page(out, read, machine, drawn)

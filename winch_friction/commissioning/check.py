@@ -254,6 +254,7 @@ def diagnosed(
     readings = [*reading_findings(runs, crane)]
     findings = [
         *_named_crane(runs, crane, others),
+        *_counts(crane),
         *(each for each in readings if each.cause in FIRST_READINGS),
         *slow,
         *simulated_findings(runs, crane.drive.hydraulic),
@@ -280,6 +281,16 @@ def _named_crane(runs: Sequence[Run], crane: Crane, others: Others) -> list[Find
     names = tuple(name for name, own in foreign.items() if own in machines)
     words = f"{runs_say(names, len(runs), 'say')} that they are of crane '{', '.join(machines)}', not of '{crane.name}'"
     return [Finding("error", "crane", words, "", names, {"recorded": machines})]
+
+
+def _counts(crane: Crane) -> Iterator[Finding]:
+    """Motors of normal winch mode that are fewer or more than those of heave compensation: a motor in eleven is within
+    what a load cell and a feedback may be off by, and `gap` would name one of these."""
+    parts = {name: count for name, count in crane.groups.items() if name != "main"}
+    main, together = crane.groups.get("main", 0), sum(parts.values())
+    if main and parts and main != together:
+        said = f"crane '{crane.name}': main has {main} motors, {' and '.join(parts)} {together}: is each counted once?"
+        yield Finding("warning", "groups", said, evidence={"main": main, "others": together})
 
 
 def refuse(findings: Sequence[Finding]) -> None:

@@ -54,9 +54,11 @@ def _mistake(diagnosis: Diagnosis, crane: Crane) -> list[Finding]:
 
 def _proof(diagnosis: Diagnosis, best: Hypothesis) -> str:
     told = runs_say(best.runs, len(diagnosis.names), "fit")
-    worst = max(diagnosis.closures, key=lambda each: each.before if each.before == each.before else -1.0)
+    # of the runs that hold the mistake: sound ones of heave compensation leave more N m, and inertia explains these
+    open_ = [each for each in diagnosis.closures if each.run in best.runs and each.before == each.before]
     balance = ""
-    if worst.before == worst.before:
+    if open_:
+        worst = max(open_, key=lambda each: each.score)
         balance = f" (the torque balance of {worst.run} is off by {worst.before:.3g} N m RMS)"
     misfit = f"misfit {diagnosis.score:.3g} -> {best.score:.3g}{balance}"
     if max(best.scores) > CONTRADICTS:

@@ -173,10 +173,10 @@ class CompensatorNode(WinchNode):
         """The files are read, and the terms made ready, beside the control; the inputs go on meanwhile."""
         model = self._files.get(self._read_model, self.guarded(self._go_on), self.told_to_end)
         self.load_terms()  # read by now: what can be set for them is declared
-        self.service.load_model(model)
+        apart = self.service.load_model(model)
         learned = self.own.follow_model_topic and self._models is not None and self._models.get_publisher_count()
         until = "; what an estimator learns of its terms replaces it (follow_model_topic)" if learned else ""
-        return f"model '{model.name}' in use{until}"
+        return f"model '{model.name}' in use{apart and f'; {apart}'}{until}"
 
     def _read_model(self) -> FrictionModel:
         read_terms(self.options.terms_file)

@@ -64,18 +64,22 @@ def _learned_at(model: FrictionModel) -> float:
     return date
 
 
+def other_terms(model: FrictionModel, beside: FrictionModel) -> str:
+    """Which terms and corrections of another model a model lacks, and which it has besides, in words; '' for none."""
+    own, others = ({*each.term_names, *(one.name for one in each.corrections)} for each in (model, beside))
+    differences = {"lacks": others - own, "has besides": own - others}
+    return " and ".join(f"it {words} {', '.join(sorted(names))}" for words, names in differences.items() if names)
+
+
 def refuse_other_terms(learned: FrictionModel, given: FrictionModel) -> None:
     """Raise `InputError` for a learned model that has other terms or corrections than the one that was given.
 
     An estimator learns values, never terms. One that was started on another model would take terms away, which is more
     than any range around the seed allows, and would undo a repaired model that was loaded meanwhile.
     """
-    own, others = ({*each.term_names, *(one.name for one in each.corrections)} for each in (learned, given))
-    differences = {"lacks": others - own, "has besides": own - others}
-    said = [f"{words} {', '.join(sorted(names))}" for words, names in differences.items() if names]
-    if said:
+    if said := other_terms(learned, given):
         raise InputError(
-            f"model '{learned.name}' was learned of another one than '{given.name}': it {' and it '.join(said)}; "
+            f"model '{learned.name}' was learned of another one than '{given.name}': {said}; "
             f"start the estimator on the model_file of '{given.name}'"
         )
 
@@ -173,10 +177,14 @@ class CompensatorService:
         except InputError as error:
             self.refuse(str(error))
 
-    def load_model(self, model: FrictionModel) -> None:
-        """Use a model from the next sample on, without a bump; `InputError` keeps the one in use."""
+    def load_model(self, model: FrictionModel) -> str:
+        """Use a model from the next sample on, without a bump; `InputError` keeps the one in use. Returns in words in
+        which terms it differs from that one: the motors' model alone takes a third of the torque away."""
+        before = self.law.model
         self.law.load_model(model)
         self._given, self.refusal = model, ""
+        apart = other_terms(model, before)
+        return apart and f"beside '{before.name}' {apart}"
 
     def refuse(self, reason: str) -> None:
         """A learned model was refused, here or by whoever read it."""

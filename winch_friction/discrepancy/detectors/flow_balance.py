@@ -242,6 +242,8 @@ def _sums(run: Run, prepared: PreparedRun, number: int, piece: slice) -> FloatAr
     del rest
     basis = np.ascontiguousarray(basis)
     lost, taken = (y - basis @ (basis.T @ y) for y in (lost[inside], taken[inside]))
+    if not taken.any():  # no pressure moved, at rest in a held load: air was neither compressed nor let go
+        return np.empty((0, 5))
     step = max(int(SEGMENT / dt), 1)
     starts = range(0, len(lost) - step + 1, step)
     return np.array(

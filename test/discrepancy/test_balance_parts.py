@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from winch_friction.discrepancy import expansion, repair
-from winch_friction.discrepancy.preparation import balance, suspended_load
+from winch_friction.discrepancy.preparation import balance, suspended_load, wire_mode
 from winch_friction.discrepancy.preparation.seen import GroupSignals
 from winch_friction.discrepancy.preparation.suspended_load import Mode, SuspendedLoad
 from winch_friction.discrepancy.thresholds import LIMITS
@@ -114,11 +114,11 @@ def test_both_accelerations_go_behind_the_same_wire(monkeypatch, damping, length
             return 2.0 * self.behind[0]
 
     monkeypatch.setattr(suspended_load, "Hung", Hung)
-    found = LOAD.on_wire(0.02, Mode(3.0, damping), length)
+    found = LOAD.on_wire(0.02, Mode(3.0, damping, share=0.8), length)
     if followed == 0:
         assert found is LOAD
         return
-    assert asked == [(0.02, None, 3.0, damping)] * 2
+    assert asked == [(0.02, None, 0.8, 3.0, damping)] * 2
     assert (found.acceleration[0], found.heave[0]) == (1.0, -0.4)
     assert found.mass is LOAD.mass
 
@@ -129,6 +129,49 @@ def test_both_accelerations_go_behind_the_same_wire(monkeypatch, damping, length
 def test_a_third_of_a_wires_mass_swings_along(hanging, wire, swings):
     """Of what is nearly all wire nothing is known."""
     assert suspended_load.swinging_mass(hanging, wire) == pytest.approx(swings)
+
+
+@pytest.mark.parametrize(("load", "wire"), [(500.0, 500.0), (900.0, 100.0), (300.0, 700.0)])
+def test_of_a_heavy_wire_what_hangs_near_the_drum_does_not_swing(load, wire):
+    """A wire of forty pieces with a load at its end: the first mode's effective mass, as a share of all that hangs."""
+    masses = np.full(40, wire / 40.0)
+    masses[-1] = load + 0.5 * wire / 40.0
+    springs = 2.0 * np.eye(40) - np.eye(40, k=1) - np.eye(40, k=-1)
+    springs[-1, -1] = 1.0
+    shape = np.linalg.eigh(springs / np.sqrt(masses[:, None] * masses))[1][:, 0] / np.sqrt(masses)
+    effective = (masses @ shape) ** 2 / (masses @ shape**2)
+    assert wire_mode.swing_share(load + wire, wire) == pytest.approx(effective / (load + wire), rel=0.05)
+
+
+def test_of_a_light_wire_all_that_hangs_swings():
+    assert (wire_mode.swing_share(900.0, 0.0), wire_mode.swing_share(900.0, 850.0)) == (1.0, 1.0)
+
+
+def test_what_does_not_swing_moves_as_on_a_rigid_wire():
+    rigid = np.sin(0.3 * np.arange(200.0))
+    whole, part = (suspended_load.Hung(rigid, 0.02, None, share).acceleration(7.0, 0.1) for share in (1.0, 0.75))
+    assert part == pytest.approx(0.75 * whole + 0.25 * rigid)
+
+
+@pytest.mark.parametrize("speed", [60.0, -60.0])
+def test_a_rope_that_climbs_onto_a_larger_layer_is_faster_after_half_a_turn(speed):
+    """Half a turn is 314 rad of the shaft and takes 5 s; a drum that hardly moves does not spread it for ever."""
+    lever = np.where(np.arange(1000) < 500, 0.008, 0.009)
+    motion = SimpleNamespace(speed=np.full(1000, speed))
+    found = suspended_load._climbing(lever, motion, CRANE, 0.02)
+    assert np.sum(found) * 0.02 == pytest.approx(0.001 * speed)
+    (climbs,) = np.nonzero(found)
+    assert (climbs[0], climbs[-1]) == (500 - 131, 500 + 131)
+    slow = suspended_load._climbing(lever, SimpleNamespace(speed=np.full(1000, 0.1)), CRANE, 0.02)
+    assert np.count_nonzero(slow) == 501
+    assert not suspended_load._climbing(np.full(1000, 0.008), motion, CRANE, 0.02).any()
+
+
+def test_samples_within_half_a_turn_of_where_the_layer_changes_are_on_neither():
+    angle = 10.0 * np.arange(200.0)  # of the shaft: a turn of the drum in 62.8 samples
+    load = SuspendedLoad(angle, np.where(angle < 1000.0, 0.8, 0.85), angle, angle, angle)
+    assert (load.on_one_layer(angle, 100.0) == (np.abs(angle - 1000.0) > 100.0 * np.pi)).all()
+    assert SuspendedLoad(angle, 0.8 + 0.0 * angle, angle, angle, angle).on_one_layer(angle, 100.0).all()
 
 
 CRANE = SimpleNamespace(

@@ -87,7 +87,7 @@ class Grid:
 def prepared(monkeypatch, mode=None, spikes=None, tension=False, wire=0.0, **masks):
     """A run of which all parts are known; `masks` are the samples that each part lets through."""
     whole = {"moving": TIME > 1.0, "settled": TIME > 2.0, "rung": TIME[60] != TIME, "known": TIME[70] != TIME,
-             "followed": TIME[80] != TIME, **masks}  # fmt: skip
+             "followed": TIME[80] != TIME, "layer": TIME[90] != TIME, **masks}  # fmt: skip
     ones, asked = np.ones(SIZE), {}
     motion = SimpleNamespace(
         used=whole["moving"], speed=2.0 * ones, acceleration=3.0 * ones, direction=ones, angle=400.0 * TIME
@@ -95,6 +95,7 @@ def prepared(monkeypatch, mode=None, spikes=None, tension=False, wire=0.0, **mas
     hanging = SimpleNamespace(
         mass=np.where(TIME < 1.0, 9e4, 4e4), tension_measured=tension, acceleration=0.1 * ones, radius=ones,
         drum_torque=5e5 * ones, heave_torque=70.0 * ones, heave=ones,
+        on_one_layer=lambda angle, gear_ratio: whole["layer"] & (angle == motion.angle) & (gear_ratio == 100.0),
     )  # fmt: skip
     balance = SimpleNamespace(
         gap=4.0 * ones, measured=9.0 * ones, predicted=600.0 * ones, simulated_torque=650.0 * ones, unit_torque=20.0,
@@ -162,6 +163,7 @@ def test_samples_count_that_every_part_lets_through_that_were_measured_and_are_n
     gap, used, dt = asked["spikes"]
     assert (gap, dt) == (4.0, DT)
     assert (used == there).all()
+    there[90] = False
     assert (found.used == (there & (TIME[-10] > TIME) & (np.arange(SIZE) != 100))).all()
     given, asked, _ = prepared(monkeypatch, spikes=np.arange(SIZE) == 200)
     assert "spikes" not in asked
@@ -232,8 +234,9 @@ def test_a_mode_that_was_found_stands_and_without_a_length_none_is_stated(monkey
 
 def test_a_wire_whose_mass_swings_along_makes_a_lighter_load_of_what_hangs(monkeypatch):
     """Two thirds of 9 t do not swing: what hangs with 40 t swings as 34 do, by a stiffness that is 40/34 as large."""
-    _, ((own, _),) = swinging(monkeypatch, wire=9e3)
+    found, ((own, more),) = swinging(monkeypatch, wire=9e3)
     assert (own[4], own[6]) == (4e4, pytest.approx((4e6 * 40.0 / 34.0,)))
+    assert found.mode.share == more["share"] == pytest.approx(35.5**2 / (40.0 * 34.0))  # the rest is rigid
 
 
 def test_other_causes_are_losses_by_the_speed_and_delays_of_the_speed_or_of_the_pressures():

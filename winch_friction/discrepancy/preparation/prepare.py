@@ -12,7 +12,7 @@ from winch_friction.discrepancy.preparation.balance import SHOWS, SPARSEST, Acco
 from winch_friction.discrepancy.preparation.grid import Grid, spikes_of
 from winch_friction.discrepancy.preparation.seen import GroupSignals, Motion, Seen, see, shared
 from winch_friction.discrepancy.preparation.suspended_load import Mode, SuspendedLoad, load_of, swinging_mass
-from winch_friction.discrepancy.preparation.wire_mode import Swing, swinging_load, wire_stiffnesses
+from winch_friction.discrepancy.preparation.wire_mode import Swing, swing_share, swinging_load, wire_stiffnesses
 from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.physics.channels import BAR, CM3_PER_REV, GRAVITY
 from winch_friction.physics.friction import FrictionModel
@@ -185,7 +185,7 @@ def prepare(
         from_speed=balance.simulated_torque - hanging.heave_torque, gear_ratio=crane.gear_ratio, inertia=crane.inertia,
         rated_torque=crane.rated_load * GRAVITY * max(crane.drum.layer_radii) / crane.gear_ratio,
         constants=tuple(sorted(completed(model, crane).constants.items())), unit_torque=balance.unit_torque,
-        used=used & grid.valid & ~spikes,
+        used=used & grid.valid & ~spikes & hanging.on_one_layer(motion.angle, crane.gear_ratio),
         spikes=spikes, present=frozenset(run.columns) | ({"hook_load"} if hanging.tension_measured else set()),
         channels=channels_of(run, grid, motion, hanging, balance.groups, crane), seen=seen,
     )  # fmt: skip
@@ -223,11 +223,11 @@ def _wire_mode(balancing: Balancing, load: SuspendedLoad, rigid: Balance, wire: 
     swing = swinging_load(
         rigid.gap, counts, load.acceleration, balancing.grid.dt, mass, load.lever, stiffnesses,
         friction=_other_causes(balancing, load, rigid), hiding=motion.acceleration[:, None],
-        length=columns.get("wire_out"),
+        length=columns.get("wire_out"), share=swing_share(mass, wire),
     )  # fmt: skip
-    if "wire_out" in columns and swing.mode.damping <= 0.0:
-        return replace(swing, mode=Mode(float(np.sqrt(stiffnesses[0] / mass)), 0.0))
-    return swing
+    known = "wire_out" in columns and swing.mode.damping <= 0.0
+    mode = Mode(float(np.sqrt(stiffnesses[0] / mass)), 0.0) if known else swing.mode
+    return replace(swing, mode=mode._replace(share=swing_share(mass, wire)))
 
 
 def _other_causes(balancing: Balancing, load: SuspendedLoad, rigid: Balance) -> FloatArray:

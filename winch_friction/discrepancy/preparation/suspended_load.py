@@ -24,6 +24,8 @@ FOLLOWS_WIRE, HEAVIEST_WIRE, HEAVIEST_UNKNOWN = 0.5, 1.5, 200.0
 # relative spread of a wire's stiffness over runs: by less a load is followed for a dozen periods; of it, what is less
 OUT_OF_TUNE, CLEARLY_CLOSER = 0.02, 0.5
 STILL, MOST_STILL = 2.0 / 3.0, 0.6  # of a wire's mass; of what hangs, of which a wire is nine tenths at most
+# rad of the drum, half a turn, in which a rope is on its next layer, along the flange; s, of a drum that stands by then
+CLIMBS, LONGEST_CLIMB = np.pi, 10.0
 SETTLED = 4.0  # decay times, down to 2 %
 
 
@@ -32,12 +34,14 @@ class Mode(NamedTuple):
 
     `follows`: its stiffness is that of the wire paid out at every moment; None where that hardly changes. `unheard`:
     the wire gives, but what is as fast in the load's measured motion is its sensors' noise, which would ring in it.
+    `share`: of what hangs, what swings; of a heavy wire the rest moves with the drum.
     """
 
     frequency: float
     damping: float
     follows: bool | None = None
     unheard: bool = False
+    share: float = 1.0
 
     @property
     def settling_time(self) -> float:
@@ -51,10 +55,11 @@ class Hung:
     (m s^2 + c s + k) x_load = (c s + k) x_rigid.
 
     With the wire's `length` m at every sample the stiffness is EA over it, and the mode that at its median; the damper
-    stays what it is.
+    stays what it is. Only a `share` of the mass swings so, the rest is rigid.
     """
 
-    def __init__(self, rigid: FloatArray, dt: float, length: FloatArray | None = None) -> None:
+    def __init__(self, rigid: FloatArray, dt: float, length: FloatArray | None = None, share: float = 1.0) -> None:
+        self._rigid, self._share = rigid, share
         self._begin = rigid[0]  # at rest before the first sample
         moved = rigid - self._begin
         self._sums, self._differences = moved.copy(), moved.copy()
@@ -72,7 +77,8 @@ class Hung:
         scale = 1.0 / (1.0 + square + damped)
         driven = (square * self._sums + damped * self._differences) * scale
         before = 2.0 * (square - 1.0) * scale, (1.0 + square - damped) * scale
-        return self._begin + recursive(before, driven)
+        swings = self._begin + recursive(before, driven)
+        return swings if self._share == 1.0 else self._rigid + self._share * (swings - self._rigid)
 
 
 @dataclass(frozen=True)
@@ -101,12 +107,21 @@ class SuspendedLoad:
         """What of it the heaving crane makes, N m at the motor shaft."""
         return self.mass * self.lever * self.heave
 
+    def on_one_layer(self, angle: FloatArray, gear_ratio: float) -> np.ndarray:
+        """Samples that are half a turn of the drum and more, by the shaft's angle in rad, away from any at which the
+        layer changes: nobody logs where on the flange a rope climbs, nor how long that takes."""
+        sure = np.ones(len(angle), bool)
+        for changed in angle[1:][np.diff(self.radius) != 0.0]:
+            sure &= np.abs(angle - changed) > CLIMBS * gear_ratio
+        return sure
+
     def on_wire(self, dt: float, mode: Mode, length: FloatArray | None) -> "SuspendedLoad":
         """The load behind the wire's mode, whose `length` m it may follow; as it is where nothing is heard of one."""
         if mode.damping <= 0.0 or mode.unheard:
             return self
         followed = length if mode.follows else None
-        moved = (Hung(each, dt, followed).acceleration(*mode[:2]) for each in (self.acceleration, self.heave))
+        hung = (Hung(each, dt, followed, mode.share) for each in (self.acceleration, self.heave))
+        moved = (each.acceleration(*mode[:2]) for each in hung)
         return replace(self, acceleration=next(moved), heave=next(moved))
 
 
@@ -138,7 +153,7 @@ def load_of(grid: Grid, motion: Motion, crane: Crane, known: float) -> Suspended
     if "heave_velocity" in columns:
         heave = np.gradient(smooth(columns["heave_velocity"], motion.window), grid.dt)
     lever = radius / crane.gear_ratio
-    acceleration = lever * motion.acceleration + heave
+    acceleration = lever * motion.acceleration + _climbing(lever, motion, crane, grid.dt) + heave
     cell = columns.get("hook_load", columns.get(COURSE))
     if cell is not None:
         length = columns.get("wire_out", -motion.angle * lever)
@@ -147,6 +162,16 @@ def load_of(grid: Grid, motion: Motion, crane: Crane, known: float) -> Suspended
     else:
         mass = np.full(size, 0.0 if np.isnan(known) else known)
     return SuspendedLoad(mass, radius, lever, acceleration, heave)
+
+
+def _climbing(lever: FloatArray, motion: Motion, crane: Crane, dt: float) -> FloatArray:
+    """Acceleration m/s^2 of a rope that climbs onto another layer: by as much as the lever is longer it is faster then,
+    and what swings on a soft wire is kicked."""
+    found = np.zeros(len(lever))
+    for k in np.flatnonzero(np.diff(lever)) + 1:
+        half = round(min(CLIMBS * crane.gear_ratio / max(abs(motion.speed[k]), 1e-9), LONGEST_CLIMB) / (2.0 * dt))
+        found[max(k - half, 0) : k + half + 1] += np.diff(lever)[k - 1] * motion.speed[k] / ((2 * half + 1) * dt)
+    return found
 
 
 def _weighed(cell: FloatArray, wire_out: FloatArray, acceleration: FloatArray, window: int, crane: Crane) -> FloatArray:

@@ -12,7 +12,7 @@ from functools import partial
 import numpy as np
 
 from winch_friction.discrepancy.preparation.grid import smooth
-from winch_friction.discrepancy.preparation.suspended_load import Hung, Mode
+from winch_friction.discrepancy.preparation.suspended_load import Hung, Mode, swinging_mass
 from winch_friction.physics.signals import FloatArray
 
 DAMPING_RATIOS = (0.01, 0.02, 0.035, 0.05, 0.07, 0.1, 0.14, 0.2, 0.3, 0.45, 0.65)
@@ -67,6 +67,7 @@ def swinging_load(
     friction: FloatArray | None = None,
     hiding: FloatArray | None = None,
     length: FloatArray | None = None,
+    share: float = 1.0,
 ) -> Swing:
     """The wire's mode that leaves least swinging in the gap.
 
@@ -74,7 +75,7 @@ def swinging_load(
     m is drum radius over gear ratio, so that mass * lever * acceleration is a torque at the shaft. `friction`, shape
     (samples, columns), is what a missing effect may look like: its steps at reversals must not count as swinging.
     What is `hiding` a swing, columns as well, is beside it where nothing swings without. Where the wire's `length` m is
-    known and changes, the stiffness follows it if that leaves less.
+    known and changes, the stiffness follows it if that leaves less. Of the mass this `share` swings.
     """
     frequencies = tuple(_frequencies(stiffnesses, mass, dt))
     besides = [each for each in (friction, hiding) if each is not None]
@@ -90,10 +91,10 @@ def swinging_load(
     def change(hung: Hung, frequency: float, ratio: float) -> FloatArray:
         return heavy * (rigid - hung.acceleration(frequency, ratio))
 
-    judge = _Judge(gap, counts, partial(change, Hung(rigid, dt)), besides)
+    judge = _Judge(gap, counts, partial(change, Hung(rigid, dt, None, share)), besides)
     first = min(len(besides), 1)
     if len(frequencies) == 1 and _changes(length):  # one that pays out twice its length swings by none in the middle
-        followed = judge.of(partial(change, Hung(rigid, dt, length)))
+        followed = judge.of(partial(change, Hung(rigid, dt, length, share)))
         judge = min((judge, followed), key=lambda each: min(each.by_damping(first, frequencies[0])))
     for parts in range(first, len(besides) + 1):
         frequency, ratio = _mode(partial(judge.left, parts), frequencies)
@@ -101,7 +102,7 @@ def swinging_load(
             if len(frequencies) > 1:
                 return Swing(Mode(frequency, ratio))
             lengths: list[FloatArray | None] = [None, *([length] if _changes(length) else [])]
-            judges = [judge.of(partial(change, Hung(rigid, dt, own))) for own in lengths]
+            judges = [judge.of(partial(change, Hung(rigid, dt, own, share))) for own in lengths]
             tuned = [_tuned(partial(each.left, len(besides)), frequency, ratio) for each in judges]
             own = int(np.argmin([each.left(len(besides), *at) for each, at in zip(judges, tuned, strict=True)]))
             mode = Mode(*tuned[own], lengths[own] is not None if len(lengths) > 1 else None)
@@ -259,6 +260,13 @@ def _frequencies(stiffnesses: Sequence[float], mass: float, dt: float) -> Iterab
         frequency = float(np.sqrt(stiffness / mass)) if mass > 0.0 and np.isfinite(stiffness) else np.inf
         if frequency * dt < FOLLOWED:  # faster than the samples can follow is rigid to them
             yield frequency
+
+
+def swing_share(hanging: float, wire: float) -> float:
+    """Share of what hangs that swings, where `wire` kg of it are its own: the effective mass of the first mode (Clough
+    and Penzien) of a wire stretched evenly. The load swings in full, a piece of the wire by how far down it hangs."""
+    swinging = swinging_mass(hanging, wire)
+    return (hanging - 0.5 * wire) ** 2 / (hanging * swinging) if swinging < hanging else 1.0
 
 
 def wire_stiffnesses(elastic_modulus_area: float, wire_out: FloatArray | None) -> tuple[float, ...]:

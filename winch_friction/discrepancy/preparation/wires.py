@@ -230,7 +230,7 @@ def agreed_modes(prepared: Sequence[PreparedRun]) -> list[Mode]:
     modes, variances = [(*run.wire_mode[:2], run.swinging) for run in able], [run.swing_variance for run in able]
     left = [_said(run) for run in able]
     ringing = ringing_damping(modes, left, [_length(run) for run in able], variances)
-    ratio = ringing[0] if ringing else shared_damping(modes, left)
+    plain, ratio = ringing is not None, ringing[0] if ringing else shared_damping(modes, left)
     told = [run for run in compensating if _slow(run, TOLD)]
     if ratio is not None and not ringing and 2 * sum(_denied(run, ratio) for run in told) > len(told):
         ratio = None
@@ -242,13 +242,13 @@ def agreed_modes(prepared: Sequence[PreparedRun]) -> list[Mode]:
         ratio = agreed_damping(swinging) or agreed_damping(every)
         ratio = None if ratio is not None and _outvoted(able, ratio) else ratio
     if ratio is None:
-        return [Mode(run.wire_mode.frequency, 0.0) for run in prepared]
+        return [run.wire_mode._replace(damping=0.0, follows=None) for run in prepared]
     said = [run.wire_mode.follows for run in prepared if run.wire_mode.follows is not None]
     follows = 2 * sum(said) >= len(said)  # as a spring's stiffness does, unless the runs that tell deny it
     return [
-        Mode(
-            at, ratio(at, run.swinging) if _slow(run) else 0.0,
-            run.wire_mode.follows if run.wire_mode.damping > 0.0 else follows, _rings(run, ratio, bool(ringing)),
+        run.wire_mode._replace(
+            frequency=at, damping=ratio(at, run.swinging) if _slow(run) else 0.0, unheard=_rings(run, ratio, plain),
+            follows=run.wire_mode.follows if run.wire_mode.damping > 0.0 else follows,
         )
         for run, at in ((run, _in_tune(run, ringing[1]) if ringing else run.wire_mode.frequency) for run in prepared)
     ]  # fmt: skip

@@ -135,7 +135,7 @@ def test_each_loop_fits_the_motor_beside_the_last_system_and_the_system_beside_t
 
 
 # -- the whole practice
-def tested(name, drum=(1e5, 2e5, 9e5)):
+def cycle_of(name, drum=(1e5, 2e5, 9e5)):
     plateaus = tuple(SimpleNamespace(drum_torque=each) for each in drum)
     return Test(SimpleNamespace(name=name), plateaus, f"curve {name}")
 
@@ -143,7 +143,7 @@ def tested(name, drum=(1e5, 2e5, 9e5)):
 @pytest.mark.parametrize(("torques", "told"), [((1e5, 1.21e5), True), ((1e5, 1.19e5), False), ((1e5,), False),
                                                ((-1e5, -2e5), False), ((-1e3, 1e5), True)])  # fmt: skip
 def test_friction_that_goes_with_the_load_asks_for_two_loads(torques, told):
-    tests = [tested("t", (each, each, 50.0 * each)) for each in torques]  # one odd plateau moves no median
+    tests = [cycle_of("t", (each, each, 50.0 * each)) for each in torques]  # one odd plateau moves no median
     if told:
         system_identification._check_loads(tests)
         return
@@ -162,14 +162,14 @@ def observed(monkeypatch, measured, model):
 
 def test_a_cost_is_the_sum_of_squares_over_all_tests(monkeypatch):
     asked = observed(monkeypatch, [3.0, 5.0, 7.0], [1.0, 6.0, 7.0])
-    assert cost_of(MOTOR, [tested("a"), tested("b")]) == 5.0
+    assert cost_of(MOTOR, [cycle_of("a"), cycle_of("b")]) == 5.0
     assert asked == [["curve a", "curve b"]]
 
 
 def found_with(**more):
     joint = SimpleNamespace(model=replace(combined(MOTOR, SYSTEM, "joint"), constants={"density": 900.0}))
     known = {
-        "tests": (tested("a"), tested("b")), "held_out": (tested("c"),),
+        "tests": (cycle_of("a"), cycle_of("b")), "held_out": (cycle_of("c"),),
         "motor": replace(MOTOR, corrections=(Correction("pressure_offset", 1e5),)), "fits": {}, "held_out_costs": (),
         "loops": tuple(Loop(k, replace(MOTOR, values=(float(k),)), SYSTEM, 1.0, 1) for k in (1, 2, 3)),
         "joint": joint, "ties": (), "unseen": ("K1 - C5",), "bootstrap": None,
@@ -209,7 +209,7 @@ def test_what_the_practice_is_given_goes_where_it_belongs(monkeypatch):
         "corrected_crane": lambda crane, corrections: f"right {crane}", "as_main": lambda crane: f"main {crane}",
         "corrected": lambda run, crane, motor: (f"right {run}", crane),
         "run_as_main": lambda run, crane: f"{run} as main",
-        "read_test": lambda run, crane, rule: tested(run, (1e5 if "a" in run.split() else 3e5,) * 3),
+        "read_test": lambda run, crane, rule: cycle_of(run, (1e5 if "a" in run.split() else 3e5,) * 3),
         "curve_data": lambda curves: curves, "second_loop": lambda data, motor: loops,
         "supplier_prior": lambda motor, spread: "prior",
         "winch_prior": lambda prior, system, name: (prior, system, name),

@@ -35,7 +35,7 @@ def test_units_in_cells_go_above_the_first_that_bears_one_in_a_long_log_too():
     assert rows.tail[0] == rows.row(702) == ["700", "700", "700 x9"]
     assert [row[1] for row in rows][-1] == rows.tail[-1][1] == "999"
     assert notes == ["cells of 1 columns bear their unit: taken off (bar)"]
-    bare = rows_of(["t;p", *(f"{k};{k} bar" for k in range(3)), *(f"{k};{k}" for k in range(900))])
+    bare = rows_of(["t;p", *(f"{k};{k} bar" for k in range(400)), *(f"{k};{k}" for k in range(600))])
     bare.take_units_out(notes)  # at the end none: what stands above is no unit of the column's
     assert (bare.row(1), len(notes)) == (["0", "0 bar"], 1)
     headless = rows_of([f"{k};{k} bar" for k in range(5)])

@@ -19,7 +19,7 @@ WARMS = Term("warms", GAIN.symbol * Z, (GAIN,), Scope.MOTOR, "here", "motor",
              state=State(Z, gain=p * 1e-7, decay=w * D * 1e4, initial=0.25))  # fmt: skip
 DWELLS = Term("dwells", RATE.symbol * Z, (replace(RATE, shape=False),), Scope.SYSTEM, "here", "gear", opposing=False,
               state=State(Z, gain=s * w, decay=w / 2, initial=-0.5))  # fmt: skip
-CURVED = Term("curved", GAIN.symbol * (1 + w / RATE.symbol) ** POWER.symbol + 5 * RATE.symbol, (GAIN, RATE, POWER),
+CURVED = Term("curved", GAIN.symbol * (1 + w / RATE.symbol) ** POWER.symbol + 5 * RATE.symbol**2, (GAIN, RATE, POWER),
               Scope.SHAFT, "here", "gear")  # fmt: skip
 SIDED = Term("sided", GAIN.symbol * omega * w + 3 * w**2 * s, (GAIN,), Scope.SHAFT, "here", "gear", opposing=False)
 COUNTED = Term("counted", GAIN.symbol * D, (GAIN,), Scope.MOTOR, "here", "motor")

@@ -48,7 +48,8 @@ def evidence(monkeypatch, worth):
 # -- the balance
 @pytest.mark.parametrize(
     ("worth", "chosen"),
-    [({}, ("bar", "t")), ({"bar": 0.5}, ("psi", "t")), ({"bar": 0.65}, ("bar", "t")), ({"t": 0.1}, ("bar", "kg")),
+    [({}, ("bar", "t")), ({"bar": 0.5}, ("psi", "t")), ({"bar": 0.65}, ("bar", "t")), ({"bar": 0.6}, ("bar", "t")),
+     ({"t": 0.1}, ("bar", "kg")),
      ({"bar": 0.1, "psi": 0.1, "t": 0.3}, ("kPa", "kg"))],
 )  # fmt: skip
 def test_each_rarer_unit_must_fit_better_by_its_rank(worth, chosen, monkeypatch):

@@ -64,7 +64,8 @@ def test_a_signal_is_written_as_people_write_it(name, symbol):
         (SIZE.symbol * (w / (2000.0 * RPM)) ** POWER.symbol, "c*sgn(ω)*(|ω|/ω_0)^k   (ω_0 = 2000 rpm)"),
         (SIZE.symbol * (1e-9 + w / (150.0 * RPM)) ** POWER.symbol, "c*sgn(ω)*(|ω|/ω_0)^k   (ω_0 = 150 rpm)"),
         (SIZE.symbol * (2.0 * w + p), "c*sgn(ω)*(2.0*|ω| + Δp)"),  # no speed to be referred to
-        (SIZE.symbol * (p + 0.01), "c*sgn(ω)*(Δp + 0.01)"),
+        (SIZE.symbol * (p + 0.001), "c*sgn(ω)*(Δp + 0.001)"),
+        (SIZE.symbol * (1e-9 * p + 5e-8), "1.0e-9*c*sgn(ω)*Δp"),
         (SIZE.symbol * (p * 1e6 + 5.0), "1000000.0*c*sgn(ω)*Δp"),
         (SIZE.symbol * (p**2 + w) / rho, "c*sgn(ω)*(|ω| + Δp^2)/ρ"),
     ],

@@ -187,10 +187,11 @@ def test_the_papers_tables_are_of_the_first_and_of_the_last_loop(monkeypatch):
 
 
 def test_a_seed_says_where_it_comes_from_and_keeps_what_was_corrected(monkeypatch):
-    observed(monkeypatch, [3.0, 5.0], [1.0, 6.0])
+    asked = observed(monkeypatch, [3.0, 5.0], [1.0, 6.0])
     crane = SimpleNamespace(name="ours", gear_ratio=180.0)
     found = found_with()
     seed = winch_seed(found, crane, "seed", {"date": "today"})
+    assert asked == [["curve a", "curve b"]]
     assert (seed.name, seed.crane, seed.values) == ("seed", "ours", (14.0, 0.2))
     assert seed.corrections == found.motor.corrections
     assert dict(seed.constants) == {"gear_ratio": 180.0, "density": 900.0}

@@ -1,5 +1,6 @@
 """Watch on a bag."""
 
+import io
 import json
 
 import pytest
@@ -45,3 +46,77 @@ def test_frames_count_from_the_first_word_of_a_node_or_once_nodes_should_have_be
     status = [{}] * silent + [{"compensator: feedforward": {}}] * 9
     found = counted(({"time": None, "status": each, "number": k} for k, each in enumerate(status)), 2)
     assert [each["number"] for each in found] == [first, first + 1]
+
+
+def rendered(frame, latest, capsys):
+    from rich.console import Console
+
+    from winch_friction.cli.watch import view
+
+    console = Console(width=200, record=True, file=io.StringIO(), force_terminal=True, color_system="standard")
+    console.print(view(frame, latest))
+    text = console.export_text(clear=False)
+    return (
+        text,
+        console.export_text(styles=True),
+        [[cell.strip() for cell in line.split("│") if cell.strip()] for line in text.splitlines() if "│" in line],
+    )
+
+
+def status_of(**values):
+    return {
+        "level": 0,
+        "message": "",
+        "hardware": "",
+        "values": {k.replace("_", " "): str(v) for k, v in values.items()},
+    }
+
+
+def test_a_frame_shows_each_figure_under_its_own_head(capsys):
+    status = {
+        "w/estimator: parameters": status_of(K1=2.0, K1_std=0.123, K1_status="learned"),
+        "w/estimator: inputs": status_of(winch_rate=40.0, winch_age=0.25),
+    }
+    frame = {"time": 12.34, "status": status, "points": {}, "notes": [("joint", "[odd] name")]}
+    text, _, rows = rendered(frame, {"speed": 123.456, "error": -1.5}, capsys)
+    assert "time 12.3 s" in text
+    assert "no fault" in text
+    assert ["motor speed [rpm]", "123.5"] in rows
+    assert ["position error of the load [mm]", "-1.5"] in rows
+    assert ["joint", "[odd] name"] in rows
+    (estimate,) = [row for row in rows if row[0].endswith("K1")]
+    assert estimate[-3:] == ["2", "0.12", "learned"]
+    (found,) = [row for row in rows if row[0].endswith("winch")]
+    assert found[-2:] == ["40.0", "0.250"]
+    heads = [line.split() for line in text.splitlines() if "┃" in line]
+    assert ["┃", "input", "┃", "rate", "[Hz]", "┃", "age", "[s]", "┃"] in heads
+    assert ["┃", "parameter", "┃", "value", "┃", "sigma", "┃", "status", "┃"] in heads
+
+
+def test_a_fault_is_red_and_what_is_not_there_yet_is_said(capsys):
+    lost = {"w/compensator: inputs": {**status_of(winch_rate=1.0), "level": 2, "message": "lost [x]"}}
+    text, styled, _ = rendered({"time": None, "status": lost, "points": {}}, {}, capsys)
+    assert "no samples yet" in text
+    assert "lost [x]" in text
+    assert "no fault" not in text
+    assert "\x1b[1;31m" in styled
+    assert "now: nothing yet" in text
+    assert "estimates, SI: nothing yet" in text
+    said, _, _ = rendered({"time": None, "status": {}, "points": {}}, {}, capsys)
+    assert said.startswith("nothing heard yet: are the nodes running")
+
+
+def test_the_verb_asks_for_what_it_was_given_and_shows_the_latest_point(monkeypatch, capsys):
+    from winch_friction.cli import live, watch
+
+    asked, shown = [], []
+    frames = [{"time": float(k), "status": {}, "points": {"speed": [[k, 1.0 + k], [k, 5.0 + k]]}} for k in range(9)]
+    monkeypatch.setattr(live, "frames", lambda *given: asked.append(given) or iter(frames))
+    monkeypatch.setattr(watch, "view", lambda frame, latest: shown.append((frame["time"], dict(latest))) or "")
+    watch.command(None, "w", "j", 3.0, 2, False)
+    assert asked == [(None, "w", 3.0, "j")]
+    assert shown == [(None, {}), (0.0, {"speed": 5.0}), (1.0, {"speed": 6.0})]
+    watch.command(None, "w", "j", 3.0, 0, True)
+    assert [json.loads(line)["time"] for line in capsys.readouterr().out.splitlines() if line.startswith("{")] == [
+        float(k) for k in range(9)
+    ]

@@ -41,6 +41,9 @@ from winch_friction.importing.units import (
     conversion,
     fitting_si_unit,
     header_readings,
+    is_foreign,
+    is_share,
+    looks_like_unit,
     says_unit,
     usual_units,
     worded,
@@ -207,6 +210,64 @@ def test_units_are_told_from_ports_brackets_and_words():
     assert [usual_units(each)[0] for each in ("hook_load", "rope_force", "pressure_b", "wire_layer")] == [
         "t", "kN", "bar", "-",
     ]  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("header", "first"),
+    [
+        ("Flow [l/min]", ("Flow", "l/min")), ("deck [m/s^2]", ("deck", "m/s^2")), ("Spannung [V]", ("Spannung", "V")),
+        ("rate, bar/s", ("rate", "bar/s")), ("Ventil [auf]", ("Ventil [auf]", "")), ("p [bar(a)] x", ("p x", "bar(a)")),
+        ("current_mA", ("current", "mA")), ("Last / kN", ("Last", "kN")), ("T; °C", ("T", "°C")),
+    ],
+)  # fmt: skip
+def test_a_unit_of_what_no_channel_is_is_a_unit_all_the_same(header, first):
+    assert header_readings(header)[0] == first
+    assert is_foreign(first[1]) == (first[1] in ("l/min", "m/s^2", "V", "bar/s"))
+
+
+def test_a_unit_in_words_is_long_and_a_port_is_none_in_either_case():
+    assert looks_like_unit("omdreininger/min")
+    assert looks_like_unit("metrische Tonnen", marked=False)
+    assert looks_like_unit("kg*m^2/s^2/m", marked=False)
+    assert not looks_like_unit("")
+    assert not looks_like_unit("hook")
+    assert not any(says_unit(f"pressure [{each}]", each) for each in "abAB")
+
+
+def test_a_share_is_of_something_but_where_the_channel_is_a_bare_number():
+    shares = ("motor_speed", "drum_speed", "displacement", "motor_torque", "motor_current")
+    assert all(is_share(each, "%") for each in shares)
+    assert all(is_share(each, "-") for each in shares)
+    assert not is_share("wire_layer", "-")
+    assert not any(is_share(each, "%") for each in ("hook_load", "pressure_a", "rope_speed", "rope_force"))
+
+
+@pytest.mark.parametrize(
+    ("channel", "unit", "what"),
+    [
+        ("displacement", "%", "share of 2 m^3/rad"), ("motor_current", "%", "share of 2 A"), ("hook_load", "t", ""),
+        ("hook_load", "kN", "mass = force / 9.81 m/s^2"),
+        ("motor_speed", "m/s", "rope speed * gear 250 / radius 0.8 m"),
+    ],
+)  # fmt: skip
+def test_how_a_number_became_si_is_told_in_words(channel, unit, what):
+    assert conversion(channel, unit, "", of=2.0, rope_radius=0.8, gear_ratio=250.0).what == what
+
+
+@pytest.mark.parametrize("unit", ["cm3", "cm^3", "cm³", "ccm"])
+def test_a_displacement_that_is_a_volume_is_of_one_revolution(unit):
+    assert conversion("displacement", unit, "").scale == pytest.approx(CM3_PER_REV)
+
+
+def test_the_units_that_are_tried_begin_with_the_most_usual():
+    first = {"motor_speed": "rpm", "drum_speed": "rpm", "rope_speed": "m/s", "speed_reference": "rpm",
+             "pressure_a": "bar", "displacement": "cm^3/rev", "motor_torque": "N*m", "load_torque": "N*m",
+             "mechanical_power": "kW", "motor_current": "A", "heave_velocity": "m/s", "oil_temperature": "degC",
+             "wire_out": "m", "shaft_angle": "rad"}  # fmt: skip
+    assert {each: usual_units(each)[0] for each in first} == first
+    assert usual_units("pressure_a")[:2] == ("bar", "Pa")  # psi only where neither fits
+    assert usual_units("rope_force")[:2] == ("kN", "N")
+    assert all(fitting_si_unit(each, unit) for each in first for unit in usual_units(each))
 
 
 # -- entries of a map

@@ -6,11 +6,12 @@ import numpy as np
 import pytest
 import yaml
 
+from winch_friction.importing import mapping
 from winch_friction.importing.carry_out import convert
 from winch_friction.importing.log import Log, number_column
 from winch_friction.importing.map_schema import map_schema
 from winch_friction.importing.map_text import map_text
-from winch_friction.importing.mapping import Entry, LogMap, load_map, map_from_content, with_settings
+from winch_friction.importing.mapping import LARGEST, Entry, LogMap, load_map, map_from_content, with_settings
 from winch_friction.importing.time_base import TimeBase
 from winch_friction.physics.errors import InputError
 from winch_friction.records.strict_yaml import config_directory
@@ -126,3 +127,74 @@ def test_how_a_log_is_read_is_not_set_from_the_command_line():
 def test_settings_that_say_nothing_are_refused(setting):
     with pytest.raises(InputError):
         with_settings(MAP, [setting])
+
+
+def mapped(text):
+    """A map of one channel and what else is said in it."""
+    return map_from_content(yaml.safe_load(f"schema: winch_friction.map/1\n{text}"), "map")
+
+
+def test_what_a_map_does_not_say_is_usual():
+    """One that a person wrote has no confidence to doubt, and no cell is missing by itself."""
+    found = mapped("columns: {motor_speed: {from: n}, wire_layer: {constant: '2'}}")
+    assert found == LogMap({"motor_speed": Entry("n"), "wire_layer": Entry("", constant="2")})
+    assert (found.time, found.bad_cells, found.time_confidence) == (TimeBase("seconds", unit="s"), "missing", 1.0)
+    entry = found.columns["motor_speed"]
+    assert (entry.unit, entry.sign, entry.factor, entry.add, entry.at, entry.confidence) == (
+        "",
+        1,
+        1.0,
+        0.0,
+        "motor",
+        1.0,
+    )
+
+
+def test_one_name_needs_no_list_and_a_factor_may_turn_a_channel_round():
+    found = mapped(
+        "columns: {hook_load: {from: m, factor: -0.5}}\ntime: {from: Uhrzeit}\nunused: Wind\nquestions: why?"
+    )
+    assert (found.time_from, found.unused, found.questions) == (("Uhrzeit",), ("Wind",), ("why?",))
+    assert found.columns["hook_load"].factor == -0.5
+    for wrong in ("unused: [1]", "time: {from: {a: b}}"):
+        with pytest.raises(InputError, match="must be a list of texts"):
+            mapped(f"columns: {{hook_load: {{from: m}}}}\n{wrong}")
+
+
+@pytest.mark.parametrize("log", ["clocks: many", "decimal: ''", "delimiter: ';;'", "names_row: first"])
+def test_how_a_log_is_read_is_one_of_what_there_is(log):
+    with pytest.raises(InputError):
+        mapped(f"columns: {{hook_load: {{from: m}}}}\nlog: {{{log}}}")
+    kept = mapped("columns: {hook_load: {from: m}}\nlog: {clocks: held, thousands: '', sheet: A, names_row: 2.0}").log
+    assert kept == {"clocks": "held", "thousands": "", "sheet": "A", "names_row": 2}
+    assert isinstance(kept["names_row"], int)
+
+
+def test_a_log_in_place_of_its_map_is_refused_unread(tmp_path, monkeypatch):
+    content = {"schema": "winch_friction.map/1", "columns": {"hook_load": {"from": "m"}}}
+    monkeypatch.setattr(mapping, "read_yaml", lambda path: content)
+    path = tmp_path / "log.yaml"
+    path.write_bytes(b"x" * LARGEST)
+    assert load_map(path).columns == {"hook_load": Entry("m")}
+    path.write_bytes(b"x" * (LARGEST + 1))
+    with pytest.raises(InputError, match=f"log.yaml: {LARGEST >> 10} kB is no map; the largest is {LARGEST >> 10} kB"):
+        load_map(path)
+    with pytest.raises(InputError, match=r"--propose --crane CRANE --map .*none.yaml"):
+        load_map(tmp_path / "none.yaml")
+
+
+def test_a_map_shows_what_is_to_be_known_of_it_and_nothing_else():
+    plain = map_text(LogMap({"motor_speed": Entry("Drehzahl Ö", "1/min", differentiate=0.25)}))
+    for key in ("sign", "factor", "add", "of", "at", "constant"):
+        assert f"\n    {key}:" not in plain
+    assert '    from: "Drehzahl Ö"\n' in plain  # as its writer wrote it
+    assert "differentiate: 0.25 " in plain
+    for key in ("crane", "questions", "log", "time", "unused"):
+        assert f"\n{key}:" not in plain
+    assert "columns: {}   # none was found" in map_text(LogMap({}))
+    said = map_text(LogMap({"motor_speed": Entry("n")}, ("t",), TimeBase("datetime"), log={"clocks": "held"}))
+    assert "  order: ymd " in said
+    assert "\n  unit:" not in said
+    assert 'clocks: "held"   # held or lines' in said
+    assert '\n  zone: ""' in said
+    assert "\n  order:" not in map_text(LogMap({"motor_speed": Entry("n")}, ("t",), TimeBase("seconds")))

@@ -180,7 +180,7 @@ def test_a_replay_learns_where_it_is_asked_to_by_the_settings_of_its_file(monkey
     from winch_friction.replay import recording, settings
 
     asked = []
-    monkeypatch.setattr(settings, "settings_from_file", lambda path: f"settings of {path}")
+    monkeypatch.setattr(settings, "settings_from_file", lambda path, *_: f"settings of {path}")
     for name in ("replay_run", "replay_recording"):
         monkeypatch.setattr(recording, name, lambda *given, name=name, **more: asked.append((name, given, more)))
     run, own = turning(), params_file and "settings of nodes.yaml"

@@ -378,6 +378,9 @@ def test_before_the_fit_the_seed_is_known_as_it_is_and_what_was_found_by_its_siz
             repair.key_of(TARE): 10.0, repair.key_of(found.corrections[1]): pytest.approx(0.003 * LIMITS.loosened),
             repair.key_of(found.corrections[2]): 0.0,
         }  # fmt: skip
+    for away, kept in ((1.5, (TARE,)), (2.5, ())):  # what no effect changed has its room around what the seed says
+        near = replace(found, corrections=(replace(TARE, value=TARE.value + away * TARE.std), *found.corrections[1:]))
+        assert repair._prior(Repair(near, {}), SEED)[0].corrections == kept
 
 
 def test_a_step_is_of_parameters_and_corrections_alone_each_in_its_unit(monkeypatch):

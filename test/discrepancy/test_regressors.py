@@ -107,6 +107,15 @@ def test_a_models_corrections_may_move_by_two_of_their_own_deviations():
     assert base_at(50.0, corrections=(TARE,)).scale[-1] == 10.0
 
 
+@pytest.mark.parametrize(("value", "shift", "lower", "upper"), [(115.0, 1.5, -3.5, 0.5), (150.0, 5.0, -7.0, 0.0)])
+def test_a_correction_moves_two_deviations_from_what_the_model_says_of_it(value, shift, lower, upper):
+    """Step by step a zero check of 1.5 +- 0.1 bar became 0.05 bar, and nothing was missing."""
+    model = FrictionModel("m", (COULOMB,), (50.0,), np.eye(1), corrections=(TARE,))
+    base = base_of(model, replace(model, corrections=(replace(TARE, value=value), SCALE)))
+    assert (base.shift[-2], base.lower[-2], base.upper[-2]) == pytest.approx((shift, lower, upper))
+    assert (base.shift[-1], base.lower[-1], base.upper[-1]) == (0.0, -2.0, 2.0)  # new: around where it was found
+
+
 @pytest.mark.parametrize(("value", "share"), [(0.0, 0.02), (0.05, 1.0), (-0.05, 1.0)])
 def test_a_correction_without_a_deviation_is_uncertain_by_a_fifth_of_itself_or_of_a_tenth_of_a_typical_one(
     value, share

@@ -27,6 +27,7 @@ from winch_friction.discrepancy.estimates import (
     within_a_sample,
     within_a_step,
 )
+from winch_friction.discrepancy.outdone import within_load_cells
 from winch_friction.discrepancy.regressors import key_of
 from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.physics.friction import FrictionModel, term_named
@@ -76,6 +77,31 @@ def test_another_name_of_that_size_is_none_of_a_transducers_zeros():
     problem = SimpleNamespace(blocks=SimpleNamespace(x=np.ones((9, 3))), columns=lambda slots: (0, 1, 2))
     fitted = SimpleNamespace(slots=(gain,), beta=np.array([0.0, 0.01, 0.0]))
     assert within_a_step(SimpleNamespace(problem=problem), [fitted], 0.1) == ""
+
+
+@pytest.mark.parametrize(
+    ("share", "warmth", "friction", "granted", "named"),
+    [
+        (-7e-4, 1.5e-5, 0.02, 2e-4, False),  # what a null had: 0.02 % from run to run, in order with the oil by chance
+        (-7e-4, 4.5e-5, 0.02, 2e-4, True),  # more than cells repeat to
+        (-7e-4, 1.5e-5, 0.02, -8e-4, True),  # with what the base grants beyond a calibrated cell's tolerance
+        (-7e-4, 1.5e-5, 0.2, 2e-4, True),  # no level alone: it changes within the runs
+        (0.0, 0.0, 0.0, 0.0, False),
+    ],
+)
+def test_levels_that_load_cells_repeat_to_are_no_name(share, warmth, friction, granted, named):
+    """Of a null whose load cell was off by another 0.03 % in each run a gain "shifted with the oil"."""
+    oil = np.repeat(np.linspace(-20.0, 15.0, 12), 40)
+    load, way = np.repeat(np.linspace(60.0, 500.0, 12), 40), np.tile([1.0, -1.0], 240)
+    x = np.column_stack([5e-4 * load, load, oil * load, way])
+    base = SimpleNamespace(names=("weight",), scale=np.array([5e-4]), upper=np.array([2.0]))
+    blocks = SimpleNamespace(x=x, run=np.repeat(np.arange(12), 40))
+    problem = SimpleNamespace(blocks=blocks, base=base, columns=lambda _: (0, 1, 2, 3))
+    fitted = SimpleNamespace(slots=("one",), beta=np.array([granted / 5e-4, share, warmth, friction]))
+    cross, none = SimpleNamespace(problem=problem), SimpleNamespace(slots=())
+    assert (within_load_cells(cross, [none, fitted], 0.1) == "") is named
+    blocks.x = x * np.array([0.0, 1.0, 1.0, 1.0])  # no load was weighed
+    assert within_load_cells(cross, [none, fitted], 0.1) == ""
 
 
 @pytest.mark.parametrize(

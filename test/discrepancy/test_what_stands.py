@@ -99,7 +99,8 @@ def test_an_amount_that_may_be_none_is_no_finding_where_a_refit_leaves_noise(lef
 
 
 def test_a_name_whose_amount_may_be_none_does_not_stand(monkeypatch):
-    for name in ("unproven", "leaves_too_much", "leaves_most", "fits_only_its_own", "within_a_sample", "within_a_step"):
+    rules = ("unproven", "leaves_too_much", "leaves_most", "fits_only_its_own", "within_a_sample", "within_a_step")
+    for name in (*rules, "within_load_cells"):
         monkeypatch.setattr(module, name, lambda *_: "")
     asked = []
     monkeypatch.setattr(module, "_may_be_none", lambda *given: asked.append(given) or "it may be none")
@@ -187,6 +188,7 @@ def test_what_shows_just_after_reversals_makes_no_locked_run_worse(monkeypatch, 
 def test_a_delay_within_half_a_sample_of_the_slowest_log_does_not_stand(monkeypatch, late, stands):
     monkeypatch.setattr(module, "unproven", lambda *_: "")
     monkeypatch.setattr(module, "leaves_too_much", lambda _: "")
+    monkeypatch.setattr(module, "within_load_cells", lambda *_: "")
     search, own = searched(Slot("signal_delay", "", (0,), origin=ORIGIN)), side()
     own.runs = (SimpleNamespace(dt=0.01), SimpleNamespace(dt=0.02))
     found = SimpleNamespace(parameters={"signal_delay": {"tau": SimpleNamespace(value=late)}})
@@ -200,6 +202,7 @@ def test_a_delay_within_half_a_sample_of_the_slowest_log_does_not_stand(monkeypa
 def test_a_curve_that_leaves_much_of_the_training_runs_does_not_stand_by_the_locked_ones(monkeypatch, free, stands):
     monkeypatch.setattr(module, "unproven", lambda *_: "")
     monkeypatch.setattr(module, "leaves_too_much", lambda _: "")
+    monkeypatch.setattr(module, "within_load_cells", lambda *_: "")
     search = searched(replace(SLOTS[0], free=free), verdict=Verdict(UNEXPLAINED, "it leaves much", leaves=True))
 
     def trial_of(own):

@@ -1,4 +1,6 @@
-"""Names that do not stand beside one law of the grammar, which does by itself what they do, however well they fit."""
+"""Names that do not stand beside what does by itself what they do, however well they fit: one law of the grammar, or
+load cells that repeat no better.
+"""
 
 from collections.abc import Callable, Sequence
 from functools import partial
@@ -16,6 +18,7 @@ from winch_friction.discrepancy.search import refused
 from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.discrepancy.vocabulary import FALLING, PICKING, RISING, UNLIKE_A_CURVE
 
+WEIGHT = "weight"  # the tolerance of the load
 # signals of an equation by the proposals' word for them
 _SAME = {"speed_magnitude": "motor_speed", "pressure_sum": "pressure"}
 
@@ -67,6 +70,34 @@ def outdone(laws: Sequence[Scored], cross: CrossFit, selection: Selection, close
     names = " and ".join(dict.fromkeys(slot.name for slot in slots))
     together = "" if one else "together "
     return f"one law of {' and '.join(law.law.signals)} does by itself more than {names} {together}would explain"
+
+
+def within_load_cells(cross: CrossFit, fitted: Sequence[Explanation], least: float) -> str:
+    """Why a name is none that adds to each run's load what its cell is off by, one of these; empty where none does.
+
+    Together with what the base grants it is within a calibrated cell's tolerance in the mean of the runs, about which
+    it scatters by no more than cells repeat to (of a dozen draws the root mean square is beyond 1.5 sigma once in a
+    hundred), and beside such levels it is less than no balance closes, `least`, in the gap's unit. Of a dozen runs
+    whose cells are off by so much some signal of one value in each tells the order.
+    """
+    problem, blocks = cross.problem, cross.problem.blocks
+    at, count = problem.base.names.index(WEIGHT), len(problem.base.names)
+    repeats = LIMITS.at_the_floor * LIMITS.least_share_of_load
+    weight = blocks.x[:, at] / problem.base.scale[at]
+    weighed = [blocks.run == run for run in np.unique(blocks.run)]
+    if not all((weight[own] != 0.0).any() for own in weighed):
+        return ""
+    for each in (one for one in fitted if one.slots):
+        torque = blocks.x[:, list(problem.columns(each.slots)[count:])] @ each.beta[count:]
+        shares = np.array([weight[own] @ torque[own] / (weight[own] @ weight[own]) for own in weighed])
+        for own, share in zip(weighed, shares, strict=True):
+            torque[own] -= share * weight[own]
+        scatter = float(np.std(shares))
+        level = abs(float(np.mean(shares)) + float(each.beta[at]) * problem.base.scale[at])
+        most = float(problem.base.upper[at] * problem.base.scale[at])
+        if scatter <= repeats and level <= most and float(np.sqrt(np.mean(torque**2))) <= least:
+            return f"{100 * scatter:.2g} % of the load from run to run is what load cells repeat to, and no name"
+    return ""
 
 
 def _above_floor(cross: CrossFit, loss: float) -> float:

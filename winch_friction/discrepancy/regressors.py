@@ -102,23 +102,23 @@ def base_of(
     """
     seed, at = np.array(model.values), np.array(expanded.values)
     std = np.array([(loose or {}).get(n, s) for n, s in zip(model.parameter_names, model.std, strict=True)])
-    unstated = [_unstated_std(value, p.typical) for value, p in zip(model.values, model.parameters, strict=True)]
-    scale = np.where(std > 0.0, std, unstated)
+    scale = np.where(std > 0.0, std, [_unstated_std(v, p.typical) for v, p in zip(seed, model.parameters, strict=True)])
     bounds = np.array([model.bounds_of(name) for name in model.parameter_names]).reshape(-1, 2)
     shift = (at - seed) / scale
     lower = np.maximum(-LIMITS.prior_bound - shift, (bounds[:, 0] - at) / scale)
     upper = np.minimum(LIMITS.prior_bound - shift, (bounds[:, 1] - at) / scale)
-    more = [(std * (HELD if name in held else 1.0), low / std, high / std) for name, std, low, high in TOLERANCES]
-    more += [
-        ((loose or {}).get(key_of(each)) or correction_std(each), -LIMITS.prior_bound, LIMITS.prior_bound)
-        for each in expanded.corrections
-    ]
-    own = np.array(more).reshape(-1, 3)
+    more = [(std * (HELD if name in held else 1.0), low / std, high / std, 0.0) for name, std, low, high in TOLERANCES]
+    claimed, most = {key_of(each): each.value for each in model.corrections}, LIMITS.prior_bound
+    for each in expanded.corrections:  # around what the model says of it, as a parameter around its seed
+        own_std = (loose or {}).get(key_of(each)) or correction_std(each)
+        off = (each.value - claimed.get(key_of(each), each.value)) / own_std
+        more.append((own_std, min(-most - off, 0.0), max(most - off, 0.0), off))
+    own = np.array(more).reshape(-1, 4)
     return Base(
         names=model.parameter_names + tuple(name for name, *_ in TOLERANCES) + tuple(map(key_of, expanded.corrections)),
         parameters=len(seed),
         scale=np.concatenate([scale, own[:, 0]]),
-        shift=np.concatenate([shift, np.zeros(len(own))]),
+        shift=np.concatenate([shift, own[:, 3]]),
         lower=np.concatenate([np.minimum(lower, 0.0), own[:, 1]]),
         upper=np.concatenate([np.maximum(upper, 0.0), own[:, 2]]),
         skew=len(seed) + [name for name, *_ in TOLERANCES].index("timing"),

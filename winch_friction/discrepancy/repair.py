@@ -23,7 +23,7 @@ from winch_friction.discrepancy.engine.blocks import Slot
 from winch_friction.discrepancy.engine.crossfit import CrossFit, Explanation
 from winch_friction.discrepancy.estimates import InFile, agreed, estimates_of, in_file, of_part, together
 from winch_friction.discrepancy.expansion import Given, meet, meet_again, with_room
-from winch_friction.discrepancy.regressors import base_of, build_problem, key_of, layout_of
+from winch_friction.discrepancy.regressors import base_of, build_problem, correction_std, key_of, layout_of
 from winch_friction.discrepancy.search import Search
 from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.physics.friction import FrictionModel, Term, term_named
@@ -224,7 +224,7 @@ def _as_found(model: FrictionModel, drafted: FrictionModel, seed: FrictionModel)
 
 
 def _prior(drafted: Repair, seed: FrictionModel) -> tuple[FrictionModel, dict[str, float]]:
-    """What is known before the fit: the seed's parameters as the seed has them, what was found only by its size."""
+    """What is known before the fit: what no effect changed, as the seed has it; what was found only by its size."""
     model = drafted.model
     known = seed.as_dict()
     loose: dict[str, float] = {}
@@ -236,11 +236,11 @@ def _prior(drafted: Repair, seed: FrictionModel) -> tuple[FrictionModel, dict[st
             values[name] = model.as_dict()[name]
         else:
             loose[name] = float(seed.std[seed.parameter_names.index(name)])
-    old = {key_of(each): each for each in seed.corrections}
-    for each in model.corrections:
-        before = old.get(key_of(each))
-        loose[key_of(each)] = LIMITS.loosened * (each.std or 0.0) if before is None else before.std or 0.0
-    return model.with_values(values), loose
+    at = {key_of(each): each.value for each in model.corrections}
+    loose |= {key_of(each): LIMITS.loosened * (each.std or 0.0) for each in model.corrections}
+    loose |= {key_of(each): each.std or 0.0 for each in seed.corrections}
+    kept = [c for c in seed.corrections if abs(at[key_of(c)] - c.value) <= 1.1 * LIMITS.prior_bound * correction_std(c)]
+    return replace(model.with_values(values), corrections=tuple(kept)), loose
 
 
 def _step(now: Given, prior: FrictionModel, loose: Mapping[str, float]) -> tuple[FloatArray, FloatArray, FloatArray]:

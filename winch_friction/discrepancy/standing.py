@@ -15,7 +15,7 @@ from winch_friction.discrepancy.engine.crossfit import CrossFit, Explanation, on
 from winch_friction.discrepancy.engine.selection import select, with_fewer
 from winch_friction.discrepancy.estimates import takes_little, within_a_sample, within_a_step
 from winch_friction.discrepancy.expansion import Given, Split, meet
-from winch_friction.discrepancy.outdone import one_law
+from winch_friction.discrepancy.outdone import one_law, within_load_cells
 from winch_friction.discrepancy.proof import (
     Trial,
     at_the_floor,
@@ -136,7 +136,7 @@ def _stands(search: Search, refit: Trial, trial_of: _TrialOf, rng: np.random.Gen
     if nobodys(refit.holdout) and takes_little(search.cross, search.selection.base, search.explanation):
         why = "the model's own parameters, fitted anew, leave too little of the locked runs for an effect"
         return None, f"{names}: {why}, and of the others this takes hardly more"
-    rivals = search.selection.found[0].rivals if len(slots) == 1 else ()
+    rivals, least = search.selection.found[0].rivals if len(slots) == 1 else (), full.holdout.least_noise
     why = (
         unproven(names, refit.holdout, full.holdout, rng)
         or leaves_too_much(full.holdout)
@@ -144,9 +144,8 @@ def _stands(search: Search, refit: Trial, trial_of: _TrialOf, rng: np.random.Gen
         or fits_only_its_own(full.train, full.holdout)
         or within_a_sample(full.repaired.parameters, full.holdout)
         or _may_be_none(slots, full, refit)
-        or within_a_step(
-            cross, [search.explanation, *(cross.explain((each,)) for each in rivals)], full.holdout.least_noise
-        )
+        or within_a_step(cross, fitted := [search.explanation, *(cross.explain((each,)) for each in rivals)], least)
+        or within_load_cells(cross, fitted, least)
     )
     return (None, why) if why else (full, "")
 

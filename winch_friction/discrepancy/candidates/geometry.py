@@ -31,7 +31,7 @@ from winch_friction.physics.friction.term import Parameter
 GAS = "accumulator_thermal"
 ONE_DEPTH = -999.0  # a label among the layer numbers
 ONE_METRE = 1.0  # then e_R is the depth in m
-FEWEST_APART = 3  # layers
+FEWEST_APART = 2  # layers
 
 m_h = Parameter("m_h", "kg", 2000.0, lower=-2e4, upper=2e4, doc="mass that the load signal does not contain")
 mu_w = Parameter("mu_w", "kg/m", 12.0, lower=0.0, upper=200.0, doc="wire weight that the load signal does not contain")
@@ -96,7 +96,7 @@ def _radius_shapes(runs: Sequence[PreparedRun]) -> list[Shape]:
 def layers_apart(runs: Sequence[PreparedRun]) -> list[Candidate]:
     """Every layer with an error of its own, as a rope that was wound anew or is crushed unevenly has.
 
-    Only over layers that a run has; with two of them the laws of one and of all layers say as much.
+    Only over layers that a run has; of a single one that of all layers says as much.
     """
     layers = _layers(runs)
     if len(layers) < FEWEST_APART:

@@ -177,20 +177,23 @@ def test_a_simulation_has_its_seed_its_hidden_effects_and_the_changes_of_its_sce
 @pytest.mark.parametrize("learn", [True, False])
 @pytest.mark.parametrize("params_file", [None, "nodes.yaml"])
 def test_a_replay_learns_where_it_is_asked_to_by_the_settings_of_its_file(monkeypatch, learn, params_file):
+    from winch_friction.records import input_mapping
     from winch_friction.replay import recording, settings
 
     asked = []
-    monkeypatch.setattr(settings, "settings_from_file", lambda path, *_: f"settings of {path}")
+    monkeypatch.setattr(settings, "settings_from_file", lambda path, namespace: f"settings of {path} {namespace}")
+    monkeypatch.setattr(input_mapping, "bag_options_of", lambda path, namespace: {"joints": f"of {path} {namespace}"})
     for name in ("replay_run", "replay_recording"):
         monkeypatch.setattr(recording, name, lambda *given, name=name, **more: asked.append((name, given, more)))
-    run, own = turning(), params_file and "settings of nodes.yaml"
+    named = "port" if params_file else ""  # of a run without a file, there is no winch to choose
+    run, own = turning(), params_file and "settings of nodes.yaml port"
     for recorded in (run, "a.mcap"):
-        result = wf.replay(recorded, CRANE, MODEL, learn=learn, params_file=params_file)
+        result = wf.replay(recorded, CRANE, MODEL, learn=learn, params_file=params_file, namespace=named)
         assert result.seed is MODEL
     usual = settings.ReplaySettings()
     assert asked == [
         ("replay_run", (run, CRANE, MODEL, own or usual), {"learn": learn}),
-        ("replay_recording", ("a.mcap", CRANE, MODEL, own), {"learn": learn}),
+        ("replay_recording", ("a.mcap", CRANE, MODEL, own), {"learn": learn, "joints": f"of {params_file} {named}"}),
     ]
 
 

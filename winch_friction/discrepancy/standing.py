@@ -1,6 +1,6 @@
 """Which names stand: those that the locked runs bear out, and no more of them than it takes."""
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
 from functools import partial
 from typing import Any
@@ -15,7 +15,7 @@ from winch_friction.discrepancy.engine.crossfit import CrossFit, Explanation, on
 from winch_friction.discrepancy.engine.selection import select, with_fewer
 from winch_friction.discrepancy.estimates import takes_little, within_a_sample, within_a_step
 from winch_friction.discrepancy.expansion import Given, Split, meet
-from winch_friction.discrepancy.outdone import one_law, within_load_cells
+from winch_friction.discrepancy.outdone import chosen_not_whole, may_be_none, one_law, within_load_cells
 from winch_friction.discrepancy.proof import (
     Trial,
     at_the_floor,
@@ -37,7 +37,6 @@ from winch_friction.discrepancy.several import by_reversals, each_proven, severa
 from winch_friction.discrepancy.thresholds import LIMITS
 
 _TrialOf = Callable[[Search], Trial]
-SURE = 3.0  # standard deviations of an amount, in a file, that surely is one
 
 
 def standing(study: Study, search: Search) -> Trial:
@@ -143,24 +142,12 @@ def _stands(search: Search, refit: Trial, trial_of: _TrialOf, rng: np.random.Gen
         or leaves_most(full.train)
         or fits_only_its_own(full.train, full.holdout)
         or within_a_sample(full.repaired.parameters, full.holdout)
-        or _may_be_none(slots, full, refit)
+        or may_be_none(slots, full, refit)
+        or chosen_not_whole(slots, full.holdout)
         or within_a_step(cross, fitted := [search.explanation, *(cross.explain((each,)) for each in rivals)], least)
         or within_load_cells(cross, fitted, least)
     )
     return (None, why) if why else (full, "")
-
-
-def _may_be_none(slots: Sequence[Slot], full: Trial, refit: Trial) -> str:
-    """Why a name is refused whose amounts are none of them sure, where a refit without it leaves the locked runs at
-    their floor: what it takes of the others is chance."""
-    if not at_the_floor(refit.holdout):
-        return ""
-    for slot in on_their_own(slots):
-        found = full.repaired.parameters.get(slot.name, {})
-        amounts = [found[p.name] for p in slot.origin[0].linear if p.name in found]
-        if amounts and all(abs(each.value) < SURE * each.std for each in amounts):
-            return f"{slot.name}: a refit without it leaves no more than noise, and its size may be none"
-    return ""
 
 
 def _stands_though_refused(

@@ -8,6 +8,7 @@ import pytest
 
 from winch_friction.discrepancy import estimates
 from winch_friction.discrepancy.candidates.candidate import ParameterEstimate
+from winch_friction.discrepancy.candidates.signals import within_load_cells
 from winch_friction.discrepancy.engine.blocks import Slot
 from winch_friction.discrepancy.estimates import (
     MIMICS,
@@ -27,7 +28,6 @@ from winch_friction.discrepancy.estimates import (
     within_a_sample,
     within_a_step,
 )
-from winch_friction.discrepancy.outdone import within_load_cells
 from winch_friction.discrepancy.regressors import key_of
 from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.physics.friction import FrictionModel, term_named

@@ -13,8 +13,8 @@ from winch_friction.discrepancy.answer import MISSING, NOTHING, UNEXPLAINED, Ver
 from winch_friction.discrepancy.candidates.candidate import ParameterEstimate
 from winch_friction.discrepancy.engine.blocks import Slot
 from winch_friction.discrepancy.engine.chance import Size
+from winch_friction.discrepancy.engine.crossfit import left_of_first_halves, same_columns
 from winch_friction.discrepancy.engine.selection import Finding, Selection
-from winch_friction.discrepancy.outdone import chosen_not_whole, may_be_none
 from winch_friction.discrepancy.proof import Trial
 from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.physics.friction.term import Parameter
@@ -95,7 +95,7 @@ def test_an_amount_that_may_be_none_is_no_finding_where_a_refit_leaves_noise(lef
     slot = Slot("one", "", (0,), origin=(SimpleNamespace(linear=(amount, other)), None))
     found = {"one": {"a": ParameterEstimate(-1.0, std, "1"), "shape": ParameterEstimate(1.0, 0.0, "1")}}
     full = SimpleNamespace(repaired=SimpleNamespace(parameters=found))
-    why = may_be_none((slot,), full, SimpleNamespace(holdout=side(left)))
+    why = module._may_be_none((slot,), full, SimpleNamespace(holdout=side(left)))
     assert why.startswith("one: ") if refused else not why
 
 
@@ -103,10 +103,10 @@ def test_an_amount_that_may_be_none_is_no_finding_where_a_refit_leaves_noise(lef
 def test_a_law_that_chooses_its_runs_says_all_of_what_is_there_or_does_not_stand(law):
     """A drag in hoisting alone, in four runs of twelve, was "a feedback's zero in some runs" that left 2.3 noises."""
     one, other = replace(SLOTS[0], law=law), SLOTS[1]
-    refused = chosen_not_whole((other, one), side(2.3))
+    refused = module._chosen_not_whole((other, one), side(2.3))
     assert refused == "one: a law that chooses its runs has to say all of it, and leaves 2.3 where the noise is 1"
-    assert not chosen_not_whole((other, one), side(1.9))
-    assert not chosen_not_whole((other,), side(2.3))
+    assert not module._chosen_not_whole((other, one), side(1.9))
+    assert not module._chosen_not_whole((other,), side(2.3))
 
 
 def test_a_law_that_chooses_its_runs_and_leaves_much_does_not_stand(monkeypatch):
@@ -122,7 +122,7 @@ def test_a_name_whose_amount_may_be_none_does_not_stand(monkeypatch):
     for name in (*rules, "within_load_cells"):
         monkeypatch.setattr(module, name, lambda *_: "")
     asked = []
-    monkeypatch.setattr(module, "may_be_none", lambda *given: asked.append(given) or "it may be none")
+    monkeypatch.setattr(module, "_may_be_none", lambda *given: asked.append(given) or "it may be none")
     search = searched(SLOTS[0])
     full, refit = Trial(search, SimpleNamespace(parameters={}), side(), side()), SimpleNamespace(holdout=side(3.0))
     assert module._stands(search, refit, lambda _: full, RNG) == (None, "it may be none")
@@ -278,8 +278,8 @@ def test_shapes_that_are_one_over_the_training_runs_are_those_of_the_same_law_wi
     cross = SimpleNamespace(
         problem=SimpleNamespace(blocks=SimpleNamespace(x=x), slots=(own, same, larger, bent, other))
     )
-    assert module._same_on_training(cross, own) == [same]
-    assert module._same_on_training(cross, larger) == []
+    assert same_columns(cross, own) == [same]
+    assert same_columns(cross, larger) == []
 
 
 def test_an_effect_stands_at_the_instant_that_leaves_least_of_the_locked_runs_first_halves():
@@ -290,7 +290,7 @@ def test_an_effect_stands_at_the_instant_that_leaves_least_of_the_locked_runs_fi
     first = np.tile([True, True, False, False], 2)
     left = {early.label: np.where(first, 3.0, 0.0), late.label: np.where(first, 1.0, 9.0)}
     locked = SimpleNamespace(problem=SimpleNamespace(blocks=blocks), remainder=lambda each: -left[each.slots[1].label])
-    assert module._left_of_first_halves(locked, SimpleNamespace(slots=(other, late))) == pytest.approx(4.0)
+    assert left_of_first_halves(locked, SimpleNamespace(slots=(other, late))) == pytest.approx(4.0)
 
     @dataclass(frozen=True)
     class Explained:

@@ -1,27 +1,21 @@
-"""Names that do not stand, however well they fit, beside what does by itself what they do: one law of the grammar, load
-cells that repeat no better, a refit, or a choice of the runs.
-"""
+"""Names that do not stand beside one law of the grammar, which does by itself what they do, however well they fit."""
 
 from collections.abc import Callable, Sequence
 from functools import partial
 
 import numpy as np
 
-from winch_friction.discrepancy.answer import Side
 from winch_friction.discrepancy.candidates.families import shapes_over
 from winch_friction.discrepancy.engine.blocks import Slot
 from winch_friction.discrepancy.engine.crossfit import CrossFit, Explanation, on_their_own
 from winch_friction.discrepancy.engine.grammar import Factor, Scored
 from winch_friction.discrepancy.engine.selection import Selection
-from winch_friction.discrepancy.proof import Trial, at_the_floor, far_off
+from winch_friction.discrepancy.proof import Trial, at_the_floor
 from winch_friction.discrepancy.proposals import near_laws
-from winch_friction.discrepancy.run_states import EACH_RUN, SINCE, SOME_RUNS
 from winch_friction.discrepancy.search import refused
 from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.discrepancy.vocabulary import FALLING, PICKING, RISING, UNLIKE_A_CURVE
 
-SURE = 3.0  # standard deviations of an amount, in a file, that surely is one
-WEIGHT = "weight"  # the tolerance of the load
 # signals of an equation by the proposals' word for them
 _SAME = {"speed_magnitude": "motor_speed", "pressure_sum": "pressure"}
 
@@ -73,60 +67,6 @@ def outdone(laws: Sequence[Scored], cross: CrossFit, selection: Selection, close
     names = " and ".join(dict.fromkeys(slot.name for slot in slots))
     together = "" if one else "together "
     return f"one law of {' and '.join(law.law.signals)} does by itself more than {names} {together}would explain"
-
-
-def within_load_cells(cross: CrossFit, fitted: Sequence[Explanation], least: float) -> str:
-    """Why a name is none that adds to each run's load what its cell is off by, one of these; empty where none does.
-
-    Together with what the base grants it is within a calibrated cell's tolerance in the mean of the runs, about which
-    it scatters by no more than cells repeat to (of a dozen draws the root mean square is beyond 1.5 sigma once in a
-    hundred), and beside such levels it is less than no balance closes, `least`, in the gap's unit. Of a dozen runs
-    whose cells are off by so much some signal of one value in each tells the order.
-    """
-    problem, blocks = cross.problem, cross.problem.blocks
-    at, count = problem.base.names.index(WEIGHT), len(problem.base.names)
-    repeats = LIMITS.at_the_floor * LIMITS.least_share_of_load
-    weight = blocks.x[:, at] / problem.base.scale[at]
-    weighed = [blocks.run == run for run in np.unique(blocks.run)]
-    if not all((weight[own] != 0.0).any() for own in weighed):
-        return ""
-    for each in (one for one in fitted if one.slots):
-        torque = blocks.x[:, list(problem.columns(each.slots)[count:])] @ each.beta[count:]
-        shares = np.array([weight[own] @ torque[own] / (weight[own] @ weight[own]) for own in weighed])
-        for own, share in zip(weighed, shares, strict=True):
-            torque[own] -= share * weight[own]
-        scatter = float(np.std(shares))
-        level = abs(float(np.mean(shares)) + float(each.beta[at]) * problem.base.scale[at])
-        most = float(problem.base.upper[at] * problem.base.scale[at])
-        if scatter <= repeats and level <= most and float(np.sqrt(np.mean(torque**2))) <= least:
-            return f"{100 * scatter:.2g} % of the load from run to run is what load cells repeat to, and no name"
-    return ""
-
-
-def may_be_none(slots: Sequence[Slot], full: Trial, refit: Trial) -> str:
-    """Why a name is refused whose amounts are none of them sure, where a refit without it leaves the locked runs at
-    their floor: what it takes of the others is chance."""
-    if not at_the_floor(refit.holdout):
-        return ""
-    for slot in on_their_own(slots):
-        found = full.repaired.parameters.get(slot.name, {})
-        amounts = [found[p.name] for p in slot.origin[0].linear if p.name in found]
-        if amounts and all(abs(each.value) < SURE * each.std for each in amounts):
-            return f"{slot.name}: a refit without it leaves no more than noise, and its size may be none"
-    return ""
-
-
-def chosen_not_whole(slots: Sequence[Slot], locked: Side) -> str:
-    """Why a name is refused that is there in chosen runs alone, where it leaves plainly more than noise: whatever is
-    there in some runs, any law that may choose its runs takes a part of.
-
-    Of such laws that were true, over four draws of drawn cranes, none left more than one and a half of the noise.
-    """
-    chosen = [slot.name for slot in on_their_own(slots) if slot.law in (SOME_RUNS, SINCE, EACH_RUN)]
-    if not chosen or not far_off(locked):
-        return ""
-    left = f"{locked.size_after.value:.3g} where the noise is {locked.floor:.3g}"
-    return f"{', '.join(chosen)}: a law that chooses its runs has to say all of it, and leaves {left}"
 
 
 def _above_floor(cross: CrossFit, loss: float) -> float:

@@ -1,6 +1,6 @@
 """Which names stand: those that the locked runs bear out, and no more of them than it takes."""
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 from typing import Any
@@ -8,14 +8,19 @@ from typing import Any
 import numpy as np
 
 from winch_friction.discrepancy.answer import AMBIGUOUS, MISSING, NOTHING, UNEXPLAINED, Side, Verdict
+from winch_friction.discrepancy.candidates.signals import within_load_cells
 from winch_friction.discrepancy.detectors import flow_balance
 from winch_friction.discrepancy.detectors import ripple as angle
-from winch_friction.discrepancy.engine.blocks import Slot, first_halves
-from winch_friction.discrepancy.engine.crossfit import CrossFit, Explanation, on_their_own
+from winch_friction.discrepancy.engine.blocks import Slot
+from winch_friction.discrepancy.engine.crossfit import (
+    left_of_first_halves,
+    on_their_own,
+    same_columns,
+)
 from winch_friction.discrepancy.engine.selection import select, with_fewer
 from winch_friction.discrepancy.estimates import takes_little, within_a_sample, within_a_step
 from winch_friction.discrepancy.expansion import Given, Split, meet
-from winch_friction.discrepancy.outdone import chosen_not_whole, may_be_none, one_law, within_load_cells
+from winch_friction.discrepancy.outdone import one_law
 from winch_friction.discrepancy.proof import (
     Trial,
     at_the_floor,
@@ -32,11 +37,13 @@ from winch_friction.discrepancy.proof import (
     worse_runs,
 )
 from winch_friction.discrepancy.repair import Repair, draft, polished
+from winch_friction.discrepancy.run_states import EACH_RUN, SINCE, SOME_RUNS
 from winch_friction.discrepancy.search import Search, Study, decided, nameless, unexplained
 from winch_friction.discrepancy.several import by_reversals, each_proven, several_leave_more_than_noise
 from winch_friction.discrepancy.thresholds import LIMITS
 
 _TrialOf = Callable[[Search], Trial]
+SURE = 3.0  # standard deviations of an amount, in a file, that surely is one
 
 
 def standing(study: Study, search: Search) -> Trial:
@@ -142,12 +149,38 @@ def _stands(search: Search, refit: Trial, trial_of: _TrialOf, rng: np.random.Gen
         or leaves_most(full.train)
         or fits_only_its_own(full.train, full.holdout)
         or within_a_sample(full.repaired.parameters, full.holdout)
-        or may_be_none(slots, full, refit)
-        or chosen_not_whole(slots, full.holdout)
+        or _may_be_none(slots, full, refit)
+        or _chosen_not_whole(slots, full.holdout)
         or within_a_step(cross, fitted := [search.explanation, *(cross.explain((each,)) for each in rivals)], least)
         or within_load_cells(cross, fitted, least)
     )
     return (None, why) if why else (full, "")
+
+
+def _may_be_none(slots: Sequence[Slot], full: Trial, refit: Trial) -> str:
+    """Why a name is refused whose amounts are none of them sure, where a refit without it leaves the locked runs at
+    their floor: what it takes of the others is chance."""
+    if not at_the_floor(refit.holdout):
+        return ""
+    for slot in on_their_own(slots):
+        found = full.repaired.parameters.get(slot.name, {})
+        amounts = [found[p.name] for p in slot.origin[0].linear if p.name in found]
+        if amounts and all(abs(each.value) < SURE * each.std for each in amounts):
+            return f"{slot.name}: a refit without it leaves no more than noise, and its size may be none"
+    return ""
+
+
+def _chosen_not_whole(slots: Sequence[Slot], locked: Side) -> str:
+    """Why a name is refused that is there in chosen runs alone, where it leaves plainly more than noise: whatever is
+    there in some runs, any law that may choose its runs takes a part of.
+
+    Of such laws that were true, over four draws of drawn cranes, none left more than one and a half of the noise.
+    """
+    chosen = [slot.name for slot in on_their_own(slots) if slot.law in (SOME_RUNS, SINCE, EACH_RUN)]
+    if not chosen or not far_off(locked):
+        return ""
+    left = f"{locked.size_after.value:.3g} where the noise is {locked.floor:.3g}"
+    return f"{', '.join(chosen)}: a law that chooses its runs has to say all of it, and leaves {left}"
 
 
 def _stands_though_refused(
@@ -251,17 +284,9 @@ def placed(search: Search, split: Split) -> Search:
     state (`run_states`): the first half of its samples says which, and all of it is what the names are proven on.
     """
     for k, slot in enumerate(search.selection.final.slots):
-        if others := _same_on_training(search.cross, slot):
+        if others := same_columns(search.cross, slot):
             search = _told(search, k, [slot, *others], split)
     return search
-
-
-def _same_on_training(cross: CrossFit, slot: Slot) -> list[Slot]:
-    """Other shapes of the same law whose columns are the same over the training runs."""
-    x = cross.problem.blocks.x
-    alike = [each for each in cross.problem.slots if (each.name, each.law) == (slot.name, slot.law)]
-    own = x[:, slot.columns]
-    return [each for each in alike if each.columns != slot.columns and np.array_equal(x[:, each.columns], own)]
 
 
 def _told(search: Search, k: int, shapes: list[Slot], split: Split) -> Search:
@@ -270,13 +295,6 @@ def _told(search: Search, k: int, shapes: list[Slot], split: Split) -> Search:
     selection, final = search.selection, search.selection.final
     sets = [(*final.slots[:k], each, *final.slots[k + 1 :]) for each in shapes]
     locked = search.expansion.cross(split.holdout, final.slots)
-    best = min(sets, key=lambda slots: _left_of_first_halves(locked, replace(final, slots=slots)))
+    best = min(sets, key=lambda slots: left_of_first_halves(locked, replace(final, slots=slots)))
     found = [replace(each, slot=best[k]) if each.slot is final.slots[k] else each for each in selection.found]
     return replace(search, selection=replace(selection, final=search.cross.explain(best), found=tuple(found)))
-
-
-def _left_of_first_halves(locked: CrossFit, explanation: Explanation) -> float:
-    """Sum of squares, in units of the noise, that an explanation of the training runs leaves of the first half of every
-    locked run."""
-    left = locked.remainder(explanation)
-    return float((left[first_halves(locked.problem.blocks)] ** 2).sum())

@@ -26,8 +26,10 @@ from winch_friction.discrepancy.candidates.candidate import (
     spoken_of,
 )
 from winch_friction.discrepancy.engine import FloatArray
+from winch_friction.discrepancy.engine.crossfit import CrossFit, Explanation
 from winch_friction.discrepancy.preparation.prepare import PreparedRun
 from winch_friction.discrepancy.preparation.seen import GroupSignals
+from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.physics.channels import BAR
 from winch_friction.physics.friction.correction import THERMAL_REFERENCE, Correction
 from winch_friction.physics.friction.term import Parameter
@@ -36,6 +38,7 @@ DELAYS = (0.05, 0.07, 0.1, 0.14, 0.2, 0.28)  # s, each as far from its neighbour
 RUNS_PER_CONSTANT = 2  # of a law of three constants or more: one decides, another can contradict
 SMALL = 0.8  # of the typical delay: the largest that the columns of a small one can be
 NEXT = 1.25  # times a delay, beyond which the next one on the grid says it better
+WEIGHT = "weight"  # the tolerance of the load
 DELAY, ZERO = "signal_delay", "pressure_offset"
 ZEROS = (ZERO, "torque_offset", "tare_load")  # of what tells a torque or a load; they act one way
 OIL = ("oil_temperature",)
@@ -248,3 +251,34 @@ def _told_apart(shapes: Shapes, linear: int, runs: Sequence[PreparedRun]) -> lis
         return constants < 3 or sum(any(spoken_of(run, shape.values)) for run in runs) >= RUNS_PER_CONSTANT * constants
 
     return [each for each in shapes(runs) if told(each)]
+
+
+# -- what a transducer may add without being wrong
+def within_load_cells(cross: CrossFit, fitted: Sequence[Explanation], least: float) -> str:
+    """Why a name is none that adds to each run's load what its cell is off by, one of these; empty where none does.
+
+    Together with what the base grants it is within a calibrated cell's tolerance in the mean of the runs, about which
+    it scatters by no more than cells repeat to (of a dozen draws the root mean square is beyond 1.5 sigma once in a
+    hundred), and beside such levels it is less than no balance closes, `least`, in the gap's unit. Of a dozen runs
+    whose cells are off by so much some signal of one value in each tells the order.
+    """
+    problem, blocks = cross.problem, cross.problem.blocks
+    if WEIGHT not in problem.base.names:
+        return ""
+    at, count = problem.base.names.index(WEIGHT), len(problem.base.names)
+    repeats = LIMITS.at_the_floor * LIMITS.least_share_of_load
+    weight = blocks.x[:, at] / problem.base.scale[at]
+    weighed = [blocks.run == run for run in np.unique(blocks.run)]
+    if not all((weight[own] != 0.0).any() for own in weighed):
+        return ""
+    for each in (one for one in fitted if one.slots):
+        torque = blocks.x[:, list(problem.columns(each.slots)[count:])] @ each.beta[count:]
+        shares = np.array([weight[own] @ torque[own] / (weight[own] @ weight[own]) for own in weighed])
+        for own, share in zip(weighed, shares, strict=True):
+            torque[own] -= share * weight[own]
+        scatter = float(np.std(shares))
+        level = abs(float(np.mean(shares)) + float(each.beta[at]) * problem.base.scale[at])
+        most = float(problem.base.upper[at] * problem.base.scale[at])
+        if scatter <= repeats and level <= most and float(np.sqrt(np.mean(torque**2))) <= least:
+            return f"{100 * scatter:.2g} % of the load from run to run is what load cells repeat to, and no name"
+    return ""

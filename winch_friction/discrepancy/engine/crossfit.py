@@ -11,7 +11,7 @@ import numpy as np
 from scipy.special import stdtr
 
 from winch_friction.discrepancy.engine import FloatArray
-from winch_friction.discrepancy.engine.blocks import Slot
+from winch_friction.discrepancy.engine.blocks import Slot, first_halves
 from winch_friction.discrepancy.engine.problem import Problem
 from winch_friction.discrepancy.thresholds import LIMITS
 
@@ -264,3 +264,18 @@ def far_less(cross: CrossFit, anew: Explanation, current: Explanation) -> bool:
     """
     few = len(anew.slots) <= len(current.slots) or cross.excess(anew) <= LIMITS.least_excess
     return few and anew.loss - cross.floor <= LIMITS.outdone * (current.loss - cross.floor)
+
+
+def same_columns(cross: CrossFit, slot: Slot) -> list[Slot]:
+    """Other shapes of the same law whose columns are the same over the training runs."""
+    x = cross.problem.blocks.x
+    alike = [each for each in cross.problem.slots if (each.name, each.law) == (slot.name, slot.law)]
+    own = x[:, slot.columns]
+    return [each for each in alike if each.columns != slot.columns and np.array_equal(x[:, each.columns], own)]
+
+
+def left_of_first_halves(locked: CrossFit, explanation: Explanation) -> float:
+    """Sum of squares, in units of the noise, that an explanation of the training runs leaves of the first half of every
+    locked run."""
+    left = locked.remainder(explanation)
+    return float((left[first_halves(locked.problem.blocks)] ** 2).sum())

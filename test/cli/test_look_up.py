@@ -126,6 +126,8 @@ def test_which_winch_of_a_bag_is_looked_at_is_said_by_its_namespace(tmp_path, ca
         speeds = {row["channel"]: row["largest"] for row in said.get("channels", ())}
         rpm = speeds["motor_speed"] if speeds else said["rows"][0]["at [rpm]"]
         assert rpm == pytest.approx(20.0 / RPM, rel=1e-2)
+    assert run(["plot", bag, "--out", str(tmp_path / "b.html"), "--namespace", "starboard"]) == 2
+    assert "displacements are fractions; give the crane" in capsys.readouterr().err
 
 
 def test_what_a_list_says_of_a_scenario_is_a_whole_sentence(capsys):

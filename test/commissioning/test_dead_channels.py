@@ -155,6 +155,8 @@ def test_a_displacement_that_nobody_measured_is_no_negative_one(displacement, ne
         ({"main": 11, "active": 3, "passive": 8}, []),
         ({"main": 10, "active": 3, "passive": 8},
          ["crane 'crane_150t': main has 10 motors, active and passive 11: is each counted once?"]),
+        ({"main": 12, "active": 3, "passive": 8},
+         ["crane 'crane_150t': main has 12 motors, active and passive 11: is each counted once?"]),
         ({"main": 10}, []),
         ({"active": 3, "passive": 8}, []),
     ],

@@ -172,6 +172,10 @@ def test_samples_within_half_a_turn_of_where_the_layer_changes_are_on_neither():
     load = SuspendedLoad(angle, np.where(angle < 1000.0, 0.8, 0.85), angle, angle, angle)
     assert (load.on_one_layer(angle, 100.0) == (np.abs(angle - 1000.0) > 100.0 * np.pi)).all()
     assert SuspendedLoad(angle, 0.8 + 0.0 * angle, angle, angle, angle).on_one_layer(angle, 100.0).all()
+    down = angle[::-1].copy()  # off the drum, through two changes that lie 700 rad apart
+    radius = 0.8 + 0.05 * (down >= 600.0) + 0.05 * (down >= 1300.0)
+    near = np.min([np.abs(down - changed) for changed in (590.0, 1290.0)], axis=0)
+    assert (SuspendedLoad(down, radius, down, down, down).on_one_layer(down, 100.0) == (near > 100.0 * np.pi)).all()
 
 
 CRANE = SimpleNamespace(

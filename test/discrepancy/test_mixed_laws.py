@@ -356,6 +356,11 @@ def test_runs_that_ring_tell_more_than_the_many_whose_sensors_seem_to(rings, exp
         assert mode.frequency == run.wire_mode[0]
 
 
+def test_a_wire_that_no_run_tells_to_give_follows_no_length_and_swings_what_it_swung():
+    still = [prepared(Mode(3.0, 0.0, True)._replace(share=0.7), RUNG, length=length) for length in (100.0, 200.0)]
+    assert [(*mode[:3], mode.share) for mode in agreed_modes(still)] == [(3.0, 0.0, None, 0.7)] * 2
+
+
 def test_heave_compensation_that_denies_a_swing_is_outvoted_by_more_runs_that_ring():
     """Where a swing is told by runs that agree only, both of two such seas would take it away."""
     hoists = [ringing(1.0, length=length) for length in (150.0, 200.0, 300.0)]

@@ -225,8 +225,7 @@ def _as_found(model: FrictionModel, drafted: FrictionModel, seed: FrictionModel)
 
 def _prior(drafted: Repair, seed: FrictionModel) -> tuple[FrictionModel, dict[str, float]]:
     """What is known before the fit: what no effect changed, as the seed has it; what was found only by its size."""
-    model = drafted.model
-    known = seed.as_dict()
+    model, known = drafted.model, seed.as_dict()
     loose: dict[str, float] = {}
     own = {name for found in drafted.parameters.values() for name in found}
     values = {name: known.get(name, value) for name, value in model.as_dict().items()}
@@ -239,7 +238,8 @@ def _prior(drafted: Repair, seed: FrictionModel) -> tuple[FrictionModel, dict[st
     at = {key_of(each): each.value for each in model.corrections}
     loose |= {key_of(each): LIMITS.loosened * (each.std or 0.0) for each in model.corrections}
     loose |= {key_of(each): each.std or 0.0 for each in seed.corrections}
-    kept = [c for c in seed.corrections if abs(at[key_of(c)] - c.value) <= 1.1 * LIMITS.prior_bound * correction_std(c)]
+    most = 1.1 * LIMITS.prior_bound
+    kept = [c for c in seed.corrections if abs(at.get(key_of(c), np.inf) - c.value) <= most * correction_std(c)]
     return replace(model.with_values(values), corrections=tuple(kept)), loose
 
 

@@ -110,10 +110,12 @@ class SuspendedLoad:
     def on_one_layer(self, angle: FloatArray, gear_ratio: float) -> np.ndarray:
         """Samples that are half a turn of the drum and more, by the shaft's angle in rad, away from any at which the
         layer changes: nobody logs where on the flange a rope climbs, nor how long that takes."""
-        sure = np.ones(len(angle), bool)
-        for changed in angle[1:][np.diff(self.radius) != 0.0]:
-            sure &= np.abs(angle - changed) > CLIMBS * gear_ratio
-        return sure
+        changes = np.sort(angle[1:][np.diff(self.radius) != 0.0])
+        if not len(changes):
+            return np.ones(len(angle), bool)
+        after = np.searchsorted(changes, angle)
+        around = (changes[np.clip(after - one, 0, len(changes) - 1)] for one in (0, 1))
+        return np.min([np.abs(angle - each) for each in around], axis=0) > CLIMBS * gear_ratio
 
     def on_wire(self, dt: float, mode: Mode, length: FloatArray | None) -> "SuspendedLoad":
         """The load behind the wire's mode, whose `length` m it may follow; as it is where nothing is heard of one."""

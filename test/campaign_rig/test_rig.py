@@ -45,7 +45,7 @@ def _plateau_residual(columns, crane, model):
 
 @pytest.mark.parametrize("flavour", [name for name, style in rig.FLAVOURS.items() if "hook_load" in style.channels])
 def test_without_an_effect_the_balance_closes(flavour, crane_150t, crane2_model):
-    runs = rig.make_dataset(5, flavour, truth=CRANE2, length=0.6)
+    runs = rig.make_dataset(5, flavour, truth=CRANE2)
     means = [_plateau_residual(columns, crane_150t, crane2_model).mean() for columns in runs[:8]]
     assert np.abs(means).max() < 4.0, means  # of 300-800 N m of friction
 

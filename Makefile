@@ -50,7 +50,7 @@ test-computing: $(READY) browser
 	$(BIN)/python -m pytest --collect-only -q >/dev/null || true
 	nice -n 5 $(BIN)/python -m pytest -m "not ros and not long" -n $(WORKERS) --dist loadfile --no-loadscope-reorder
 
-# more whole data sets of the kinds that `make test` holds one or some of, five minutes on two cores: before a change of
+# more whole data sets of the kinds that `make test` holds one or some of, nine minutes on two cores: before a change of
 # the gap workflow lands, and in the campaign of faults
 test-long: $(READY)
 	$(BIN)/python -m pytest -m long -n logical --maxprocesses 4

@@ -238,7 +238,7 @@ def _prior(drafted: Repair, seed: FrictionModel) -> tuple[FrictionModel, dict[st
     at = {key_of(each): each.value for each in model.corrections}
     loose |= {key_of(each): LIMITS.loosened * (each.std or 0.0) for each in model.corrections}
     loose |= {key_of(each): each.std or 0.0 for each in seed.corrections}
-    most = 1.1 * LIMITS.prior_bound
+    most = 1.1 * LIMITS.prior_bound  # a tenth beyond its room: only an effect has moved it further
     kept = [c for c in seed.corrections if abs(at.get(key_of(c), np.inf) - c.value) <= most * correction_std(c)]
     return replace(model.with_values(values), corrections=tuple(kept)), loose
 

@@ -169,10 +169,10 @@ def load_of(grid: Grid, motion: Motion, crane: Crane, known: float) -> Suspended
 def _climbing(lever: FloatArray, motion: Motion, crane: Crane, dt: float) -> FloatArray:
     """Acceleration m/s^2 of a rope that climbs onto another layer: by as much as the lever is longer it is faster then,
     and what swings on a soft wire is kicked."""
-    found = np.zeros(len(lever))
-    for k in np.flatnonzero(np.diff(lever)) + 1:
+    found, longer = np.zeros(len(lever)), np.diff(lever, prepend=lever[:1])
+    for k in np.flatnonzero(longer):
         half = round(min(CLIMBS * crane.gear_ratio / max(abs(motion.speed[k]), 1e-9), LONGEST_CLIMB) / (2.0 * dt))
-        found[max(k - half, 0) : k + half + 1] += np.diff(lever)[k - 1] * motion.speed[k] / ((2 * half + 1) * dt)
+        found[max(k - half, 0) : k + half + 1] += longer[k] * motion.speed[k] / ((2 * half + 1) * dt)
     return found
 
 

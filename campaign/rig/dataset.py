@@ -22,7 +22,7 @@ from campaign.rig.world import SHIPPED, World, draw_world
 Columns = dict[str, np.ndarray]
 EPOCH = 1_700_000_000.0  # Unix time of the first run
 SETTLES = 6.0  # how many times over all dates what creeps comes nearer by a factor of e
-FILLS_IN = 30.0  # s, of a buffer between PLC and logger
+DRAINS_IN = 40.0  # s, by when all but a part in e of what waits between PLC and logger is worked off
 DRAWN = "drawn"  # the flavour of a crane, seed model, test plan and instruments that are drawn from the data set's seed
 
 
@@ -210,7 +210,8 @@ def _log(
     reference, tip, celsius = wanted
     index, stamp = instruments.sampling(out.shape[1], 1.0 / style.rate, style.jitter, rng)
     delay = hidden.delay if hidden.delay_every == 1.0 else hidden.delay * plant.brake_hangs
-    delay = delay + hidden.delay_swing * np.mod(stamp / FILLS_IN, 1.0)
+    delay = delay + hidden.delay_swing * np.mod(stamp / hidden.delay_fills_in, 1.0)
+    delay = delay + hidden.delay_drains * np.exp(-stamp / DRAINS_IN)
     late, early = (delay, 0.0 * delay) if style.pressure_is_late else (0.0 * delay, delay)
     at = np.clip(np.round(index - late / STEP).astype(int), 0, None)
     group = "active" if plan.ahc else "main"

@@ -98,7 +98,9 @@ class Hidden(NamedTuple):
     pressure_s: float = 0.0  # gain error at 80 bar, the opposite at 240, nothing at 160, port A of the driving motors
     delay: float = 0.0  # s, of the speed signal
     delay_every: float = 1.0  # share of the runs that it is in
-    delay_swing: float = 0.0  # s, to which a buffer fills every half minute before it is emptied
+    delay_swing: float = 0.0  # s, to which a buffer fills before it is emptied
+    delay_fills_in: float = 30.0  # s, in which it does, from the run's beginning
+    delay_drains: float = 0.0  # s, of what waits when a run begins and is worked off
     speed_filter: float = 0.0  # s, time constant of a first-order filter of the speed signal
     swivel: float = 0.0  # m^3/rad
     swivel_gain: float = 0.0  # relative

@@ -63,6 +63,14 @@ def typical(name, sign=1.0):
     return Correction(name, (sign if lower < 0.0 else 1.0) * DECLARED[name].parameter.typical, **ties(name))
 
 
+def fullness(correction, time):
+    """What a delay is of its value, `time` s from the run's beginning."""
+    if correction.declared.by_time:
+        return time
+    period = correction.time_constant
+    return np.ones_like(time) if period is None else time / period - np.floor(time / period)
+
+
 def spoiled(run, correction):
     """The run as a machine with this error logs it: written here on its own, from the words of the declarations."""
     e, action, columns = correction.value, correction.declared.action, dict(run.columns)
@@ -91,7 +99,7 @@ def spoiled(run, correction):
                 x = true / correction.beyond
                 columns[name] = true + e * 6.0 * np.sqrt(3.0) * x * (1.0 - x) * (1.0 - 2.0 * x)
             elif action is Action.DELAY:
-                columns[name] = np.interp(time - e * (time if correction.declared.by_time else 1.0), time, true)
+                columns[name] = np.interp(time - e * fullness(correction, time), time, true)
             elif action is Action.FILTER:  # settled on the first value
                 columns[name] = true[0] + lsim(([1.0], [e, 1.0]), true - true[0], 0.02 * np.arange(len(time)))[1]
             elif action is Action.MASS:
@@ -138,8 +146,13 @@ def test_every_correction_gives_the_truth_back(name, sign, truth, crane_150t, cr
     keep = np.isin(truth.time, run.time)
     # a delay and a filter do not know what came before the log began, and a delay loses what it shifts at one end
     inner = slice(60, -60) if correction.declared.late else slice(None)
+    known = np.ones(len(run), bool)
+    if name.endswith("_buffer"):  # what went by while it was emptied, and the first sample of it, was never logged
+        since = run.time - run.time[0]
+        known = fullness(correction, since) < 1.0 - (correction.value + 0.04) / correction.time_constant
+        assert 0.9 < known.mean() < 1.0
     for column in truth.columns:
-        np.testing.assert_allclose(run[column][inner], truth[column][keep][inner], rtol=1e-3, atol=1e-2)
+        np.testing.assert_allclose(run[column][known][inner], truth[column][keep][known][inner], rtol=1e-3, atol=1e-2)
     assert run.metadata["corrections"] == (name,)
 
 
@@ -165,6 +178,32 @@ def test_a_delay_of_whole_samples_is_exact(truth, crane_150t, crane2_model):
     assert len(run) == len(truth) - 5
     np.testing.assert_allclose(run["motor_speed"], truth["motor_speed"][:-5], atol=1e-4)
     np.testing.assert_array_equal(run["active.pressure_a"], truth["active.pressure_a"][:-5])
+
+
+def test_what_a_full_buffer_swallows_is_a_line_between_its_neighbours(truth, crane_150t, crane2_model):
+    """Late by 0.2 s when full, every 5 s: between 4.8 and 5 s a straight line, after it the log as it is again."""
+    model = replace(crane2_model, corrections=(Correction("signal_buffer", 0.2, time_constant=5.0),))
+    ramp = np.arange(len(truth)) * 1.0
+    run, _ = corrected(replace(truth, columns=truth.columns | {"motor_speed": ramp}), crane_150t, model)
+    since = run.time - run.time[0]
+    beginning, swallowed, after = (since < 4.78), (since > 4.82) & (since < 4.98), (since > 5.02) & (since < 9.78)
+    for part, begins in ((beginning, 0.0), (after, 5.0)):
+        logged = begins + (since[part] - begins) / 0.96  # logged when it was full by so much
+        np.testing.assert_allclose(run["motor_speed"][part] * 0.02, logged, atol=1e-6)  # stamps since 1970
+    np.testing.assert_allclose(np.diff(run["motor_speed"][swallowed], 2), 0.0, atol=1e-4)
+    assert len(truth) - len(run) in (0, 1, 10)
+
+
+@pytest.mark.parametrize(("upper", "period", "allowed"), [(0.5, 0.6, True), (0.5, 0.5, False), (0.1, 0.2, True)])
+def test_a_buffer_holds_less_than_what_fills_it(upper, period, allowed):
+    def asked():
+        return Correction("pressure_buffer", 0.05, upper=upper, time_constant=period)
+
+    if allowed:
+        assert asked().time_constant == period
+    else:
+        with pytest.raises(InputError, match="time_constant must be above its upper bound of 0.5 s, found 0.5 s"):
+            asked()
 
 
 def test_offset_and_gain_of_one_transducer_come_out_together(truth, crane_150t, crane2_model):
@@ -487,6 +526,8 @@ IS = {
     "pressure_delay": ("signal", "s", 0.05, -0.5, 0.5, DRIVE, (), NOT_LIVE),
     "signal_clock": ("signal", "1", 1e-3, -5e-3, 5e-3, SPEEDS, (), NOT_LIVE | {"by_time": True}),
     "pressure_clock": ("signal", "1", 1e-3, -5e-3, 5e-3, DRIVE, (), NOT_LIVE | {"by_time": True}),
+    "signal_buffer": ("signal", "s", 0.1, 0.0, 0.5, SPEEDS, (), NOT_LIVE | {"has_time_constant": True}),
+    "pressure_buffer": ("signal", "s", 0.1, 0.0, 0.5, DRIVE, (), NOT_LIVE | {"has_time_constant": True}),
     "signal_filter": ("signal", "s", 0.05, 0.0, 0.5, SPEEDS, (), NOT_LIVE),
     "pressure_filter": ("signal", "s", 0.05, 0.0, 0.5, DRIVE, (), NOT_LIVE),
     "layer_radius": ("geometry", "m", 0.06, -0.5, 0.5, (), (), {"by_layer": True}),

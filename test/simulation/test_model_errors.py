@@ -14,10 +14,11 @@ from winch_friction.physics.friction.declared_correction import DECLARED, Action
 from winch_friction.simulation import Simulator, simulate
 
 OF_SENSORS = (Action.OFFSET, Action.SCALE, Action.CURVATURE, Action.BEND, Action.S_SHAPE, Action.DELAY)
-SIGNALS = [n for n, d in DECLARED.items() if d.action in OF_SENSORS and not d.by_time]
+WITHIN_RUNS = [n for n, d in DECLARED.items() if d.late and (d.by_time or d.has_time_constant)]
+SIGNALS = [n for n, d in DECLARED.items() if d.action in OF_SENSORS and n not in WITHIN_RUNS]
 BENDS_AT = {"Pa": 60.0 * BAR, "m^3/rad": 50.0 * CM3_PER_REV}
 PLANT = (Action.WARMTH, Action.HEAT, Action.SLIP, Action.FILTER)
-OF_THE_PLANT = [n for n, d in DECLARED.items() if d.by_time or d.action in PLANT]
+OF_THE_PLANT = [n for n, d in DECLARED.items() if n in WITHIN_RUNS or d.action in PLANT]
 STILL = {**CLEAN, "sea": {"kind": "still"}, "duration": 20.0}
 
 

@@ -211,7 +211,7 @@ def search_runs(study: Study, given: Given, also: LastResort | None = None) -> S
             shapes = (most,)
         late = long_delay(shapes, cross, selection.final)
         if late is not None:
-            candidates = without_delay(given, candidates, late, cross, selection.final)
+            candidates = without_delay(given, candidates, late, cross, selection.final, train)
         del cross  # the largest thing there is, and not needed beside the next one
         around = expand_around(given, expansion, selection.final, candidates)
         waves = _waves(around, ripple)

@@ -170,16 +170,24 @@ def _filter(columns: Columns, run: Run, c: Correction, crane: Crane) -> Columns:
 
 
 def _delay(columns: Columns, run: Run, c: Correction, crane: Crane) -> Columns:
-    """What is logged at t happened at t - delay; rows at the end (or the start) that nothing is known of fall away."""
+    """What is logged at t happened at t - delay; rows at the end (or the start) that nothing is known of fall away.
+    What went by while a full buffer was emptied is nowhere: there a line is drawn."""
     time, late = columns["time"], _late(columns, run, c)
     if not late or len(time) < 2:
         return columns
-    at = time + (c.value * (time - time[0]) / (1.0 - c.value) if c.declared.by_time else c.value)
-    inside = (at <= time[-1]) & (at >= time[0])
+    happened = time - c.value * _fullness(c, time - time[0])
+    inside = (happened[0] <= time) & (time <= happened[-1])
     if inside.sum() < 2:
         raise InputError(f"{run.name}: too short for a {c.name} of {c.value:g} s")
-    shifted = {name: np.interp(at, time, columns[name]) for name in late}
+    shifted = {name: np.interp(time, happened, columns[name]) for name in late}
     return {name: values[inside] for name, values in (columns | shifted).items()}
+
+
+def _fullness(c: Correction, since: FloatArray) -> FloatArray:
+    """What each row has of a delay, `since` s from the run's beginning."""
+    if c.time_constant is not None:
+        return np.mod(since / c.time_constant, 1.0)
+    return since if c.declared.by_time else np.ones_like(since)
 
 
 def _mass(columns: Columns, run: Run, c: Correction, crane: Crane) -> Columns:

@@ -48,6 +48,7 @@ SLOWEST_FOR_DELAY = 0.055  # s between samples: half a delay of 0.1 s
 # what is shifted: all that is predicted, as when the pressures come late, or what the speed tells of it
 PRESSURES, SPEED = 1.0, 0.0
 CLOCKED = 100.0  # s from a run's beginning, by when a clock that drifts is late by what is said of it
+FILLS_IN = "fills_in"  # s, within which a delay grows to what is said of it, before it starts again
 SMALL_DELAY = {"ahead": 0.03, "behind": 0.03, "late": SPEED}  # s
 
 p_T = Parameter(
@@ -190,13 +191,21 @@ def late_by(values: Values) -> dict[str, float]:
     side, sign = ("pressure", -1.0) if values["late"] == PRESSURES else ("signal", 1.0)
     if "by_time" in values:
         return {f"{side}_clock": sign / CLOCKED}
+    if FILLS_IN in values:
+        return {f"{side}_buffer": sign}
     filtered = values.get("filtered", 0.0)
     parts = {f"{side}_delay": sign * (1.0 - filtered), f"{side}_filter": sign * filtered}
     return {name: share for name, share in parts.items() if share}
 
 
+def fills_in(values: Values) -> float | None:
+    """The time in s within which a shape of lateness grows before it starts again; None where it does not."""
+    return values.get(FILLS_IN)
+
+
 def _to_delay(found: Estimates, shape: Shape, _: Sides) -> list[Correction]:
-    return [correction(name, found[tau.name], share) for name, share in late_by(shape.values).items()]
+    ties = {"time_constant": fills_in(shape.values)}
+    return [correction(name, found[tau.name], share, **ties) for name, share in late_by(shape.values).items()]
 
 
 def signal_candidates() -> list[Candidate]:

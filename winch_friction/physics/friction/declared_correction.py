@@ -41,8 +41,8 @@ class DeclaredCorrection:
     `parameter`: its unit, typical size and the bounds beyond which it is not physical. `kind`: signal, geometry, load
     or inertia. `channels`: the run columns (a group's channel without the group) that are wrong; `reads`: further
     columns that the correction needs. `by_group`, `by_layer`: whether it may be tied to motor groups or wire layers;
-    `has_time_constant`: whether it fades over one; `live`: whether a running node can take it out; `grows`: whether it
-    comes in proportion to the time within `during`, and stays.
+    `has_time_constant`: whether it fades over one, or fills up within one; `live`: whether a running node can take it
+    out; `grows`: whether it comes in proportion to the time within `during`, and stays.
     """
 
     name: str
@@ -81,7 +81,7 @@ _OIL = ("oil_temperature",)
 def _signal(
     name: str, action: Action, unit: str, typical: float, reach: float, doc: str, *channels: str, **more: Any
 ) -> DeclaredCorrection:
-    lower = 0.0 if action is Action.FILTER else -reach  # a filter makes nothing early
+    lower = 0.0 if action is Action.FILTER or "has_time_constant" in more else -reach  # neither makes anything early
     parameter = Parameter(name, unit, typical, lower=lower, upper=reach, doc=doc)
     by_group = any(channel in (*_PRESSURES, "displacement") for channel in channels) and action not in LATE
     return DeclaredCorrection(name, parameter, "signal", action, channels, by_group=by_group, **more)
@@ -151,6 +151,8 @@ _DECLARED = (
             "displacement", bends_in="m^3/rad"),
     *_late("delay", "s", 0.05, 0.5, "how late {} logged"),
     *_late("clock", "1", 1e-3, 5e-3, "how late {} logged, per second since the run began", by_time=True),
+    *_late("buffer", "s", 0.1, 0.5, "how late {} logged when a buffer is full, which is emptied when a run begins and "
+           "every time constant from then on", has_time_constant=True),
     *_late("filter", "s", 0.05, 0.5, "time constant of the first-order filter behind which {} logged", Action.FILTER),
     DeclaredCorrection(
         "layer_radius", Parameter("layer_radius", "m", 0.06, -0.5, 0.5, doc="what the crane file's rope radius lacks"),

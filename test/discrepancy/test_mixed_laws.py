@@ -127,13 +127,24 @@ def test_a_long_delay_is_taken_out_of_the_runs():
     assert found.model.corrections[0].value == pytest.approx(0.117, abs=0.01)
 
 
+@pytest.mark.long
+def test_a_delay_that_fills_up_and_starts_again_is_taken_out_of_the_runs():
+    found = gap_of(917, "elastic_still", ("signal_delay:fills_up", 1.0))
+    assert names_of(found) == [{"signal_delay"}]
+    assert found.holdout.size_after.value < 0.2 * found.holdout.size_before.value
+    (own,) = found.model.corrections
+    assert own.name in ("signal_buffer", "pressure_buffer")
+    assert own.value == pytest.approx(0.15, abs=0.01)
+    assert 7.9 < own.time_constant < 60.2
+
+
 def test_a_suspected_delays_column_is_what_the_runs_are_without_it(crane_150t, crane2_model):
     given = meet(runs_with(912, "quiet", ("signal_delay", 1.0), length=0.3), crane_150t, crane2_model)
     own = next(each for each in signal_candidates() if each.name == DELAY)
     late = next(each for each in own.shapes(given.prepared) if each.label == "speed late, about 100 ms")
     suspect = Slot(DELAY, late.label, (0,), origin=(own, late))
     other = SimpleNamespace(slots=())
-    (exact,) = without_delay(given, [own], suspect, None, other)
+    (exact,) = without_delay(given, [own], suspect, None, other, tuple(run.name for run in given.runs))
     assert long_delay([suspect], None, other) is suspect
     shape = next(each for each in exact.shapes(given.prepared) if each.values.get("delay") == pytest.approx(0.1))
     assert shape.values["late"] == SPEED

@@ -245,10 +245,13 @@ def test_a_delay_that_stays_or_grows_on_is_no_buffer(kind):
     assert delay._filled([logged(kind, SPEED, seed=k) for k in range(3)], 0.1) == []
 
 
-def test_a_buffer_that_is_not_emptied_twice_in_the_shortest_run_is_not_looked_for():
-    runs = [logged("buffer", SPEED), logged("buffer", SPEED, seconds=30.0)]
-    assert all(each.values["fills_in"] <= 15.0 for each in delay._filled(runs, 0.06))
-    assert delay._filled([logged("buffer", SPEED, seconds=9.0)], 0.06) == []
+def test_a_buffer_that_is_not_seen_to_start_again_is_not_looked_for():
+    """Emptied after 17 s, and that in one run and a half of it: of runs of 16 s it fills too seldom."""
+    runs = [logged("buffer", SPEED, seconds=seconds) for seconds in (12.0, 40.0, 24.0)]
+    assert delay._filled(runs, 0.06)[0].values["fills_in"] == pytest.approx(17.0, rel=0.05)
+    short = [logged("buffer", SPEED, seconds=seconds) for seconds in (16.0, 16.0, 40.0)]
+    assert all(each.values["fills_in"] < 14.0 for each in delay._filled(short, 0.06))
+    assert delay._filled([logged("buffer", SPEED, seconds=5.0)], 0.06) == []
 
 
 def test_of_a_long_log_its_beginning_tells_how_often_a_buffer_is_emptied():

@@ -4,7 +4,7 @@ A regressor shifts what was predicted; that leaves a quarter of a delay of a ten
 the load's inertia and the reversals shift as well. Taken out of the signals themselves, all of it goes.
 """
 
-from collections.abc import Collection, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 
@@ -37,7 +37,7 @@ FILTERED = (1.0, 0.5)  # shares of what is late that a filter of first order mak
 REACH = 1.1  # times a delay: half way to the next one
 # of a buffer that fills up and is emptied, again and again from a run's beginning
 SOONEST = 5.0  # s; what comes as often as waves do is not told from what waves do
-FILLINGS = 2.0  # in the shortest run: of fewer it is a clock that drifts
+FILLINGS = 1.25  # in the median run: of one that is not seen to start again it is a clock that drifts
 LOOKED_AT = 600.0  # s of each run: enough for a hundredth of a period, and no more of an hour's log than of a test's
 BIN = 0.25  # s, a twentieth of the soonest: within it a delay hardly grows
 COHERENT = 0.2  # of a filling, by which neighbours on the grid of periods differ at the end of what is looked at
@@ -53,7 +53,7 @@ def without_delay(
     suspect: Slot,
     cross: CrossFit,
     fitted: Explanation,
-    train: Collection[str],
+    train: tuple[str, ...],
 ) -> list[Candidate]:
     """The candidates, the `suspect` delay as what its signals are without it, and without one that grows in each run:
     two loggers' clocks are set when a run begins, and drift; a buffer fills up until it is emptied, by the runs of the
@@ -90,7 +90,7 @@ def _filled(runs: Sequence[PreparedRun], size: float) -> list[Shape]:
 
     One period after the other, as a periodogram has them; what a delay grows to is fitted to each.
     """
-    duration = min([LOOKED_AT, *(run.time[-1] for run in runs)])
+    durations = np.minimum([run.time[-1] for run in runs], LOOKED_AT)
     late = SPEED if size > 0.0 else PRESSURES
     behind = {"ahead": max(size, 0.0), "behind": max(-size, 0.0), "late": late}
     parts = [_binned(run, delay_columns(run, behind)[:, 0]) for run in runs]
@@ -102,8 +102,8 @@ def _filled(runs: Sequence[PreparedRun], size: float) -> list[Shape]:
     def best(each_second: FloatArray) -> float:
         return max(each_second, key=lambda f: told(np.mod(time * f, 1.0)), default=0.0)
 
-    step = COHERENT / duration
-    coarse = best(np.arange(FILLINGS / duration, 1.0 / SOONEST, step))
+    step = COHERENT / durations.max()
+    coarse = best(np.arange(FILLINGS / np.median(durations), 1.0 / SOONEST, step))
     often = best(coarse + step * np.linspace(-1.0, 1.0, 21))
     full = np.mod(time * often, 1.0)
     if coarse == 0.0 or told(full) <= max(told(np.ones_like(time)), told(time)):

@@ -23,6 +23,7 @@ Columns = dict[str, np.ndarray]
 EPOCH = 1_700_000_000.0  # Unix time of the first run
 SETTLES = 6.0  # how many times over all dates what creeps comes nearer by a factor of e
 DRAINS_IN = 40.0  # s, by when all but a part in e of what waits between PLC and logger is worked off
+WANDERS_IN = 70.0  # s, from one quiet time of the network to the next
 DRAWN = "drawn"  # the flavour of a crane, seed model, test plan and instruments that are drawn from the data set's seed
 
 
@@ -211,7 +212,9 @@ def _log(
     index, stamp = instruments.sampling(out.shape[1], 1.0 / style.rate, style.jitter, rng)
     delay = hidden.delay if hidden.delay_every == 1.0 else hidden.delay * plant.brake_hangs
     delay = delay + hidden.delay_swing * np.mod(stamp / hidden.delay_fills_in, 1.0)
-    delay = delay + hidden.delay_drains * np.exp(-stamp / DRAINS_IN)
+    worked_off = np.exp(-stamp / DRAINS_IN)
+    delay = delay + hidden.delay_drains * worked_off + hidden.delay_settles * (1.0 - worked_off)
+    delay = delay + hidden.delay_wanders * np.sin(np.pi * stamp / WANDERS_IN) ** 2
     late, early = (delay, 0.0 * delay) if style.pressure_is_late else (0.0 * delay, delay)
     at = np.clip(np.round(index - late / STEP).astype(int), 0, None)
     group = "active" if plan.ahc else "main"

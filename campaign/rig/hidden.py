@@ -101,6 +101,8 @@ class Hidden(NamedTuple):
     delay_swing: float = 0.0  # s, to which a buffer fills before it is emptied
     delay_fills_in: float = 30.0  # s, in which it does, from the run's beginning
     delay_drains: float = 0.0  # s, of what waits when a run begins and is worked off
+    delay_settles: float = 0.0  # s, to which it grows in as long a time and stays
+    delay_wanders: float = 0.0  # s, to which it swings from nothing and back, as the load of a network does
     speed_filter: float = 0.0  # s, time constant of a first-order filter of the speed signal
     swivel: float = 0.0  # m^3/rad
     swivel_gain: float = 0.0  # relative

@@ -188,7 +188,8 @@ OTHER: dict[str, tuple[Law, ...]] = {
         Law("longer", _set(delay=0.09)), Law("filtered", _set(speed_filter=0.06)),
         Law("some_runs", lambda s, rng, f: {"delay": 0.08 * s, "delay_every": 0.5}),
         Law("fills_up", lambda s, rng, f: {"delay_swing": 0.15 * s, "delay_fills_in": rng.uniform(8.0, 60.0)}),
-        Law("drains", _set(delay_drains=0.2), held_out=True),
+        Law("drains", _set(delay_drains=0.2)), Law("settles", _set(delay_settles=0.15)),
+        Law("wanders", _set(delay_wanders=0.15), held_out=True),
     ),
     "swivel_offset": (
         Law("gain", _set(swivel_gain=0.02)), Law("play", _set(swivel_play=1.5 * CM3_PER_REV)),

@@ -11,7 +11,7 @@ from winch_friction.discrepancy.answer import GapOptions
 from winch_friction.discrepancy.candidates.candidate import BALANCING, ParameterEstimate, Shape, Sides
 from winch_friction.discrepancy.candidates.feedback import bowed_columns, feedback_candidates
 from winch_friction.discrepancy.candidates.signals import DELAY, SPEED, signal_candidates
-from winch_friction.discrepancy.detectors.delay import without_delay
+from winch_friction.discrepancy.detectors.delay import long_delay, without_delay
 from winch_friction.discrepancy.engine.blocks import Slot
 from winch_friction.discrepancy.estimates import agreed, in_file, of_part, together
 from winch_friction.discrepancy.expansion import as_rigid, meet, swings
@@ -19,7 +19,6 @@ from winch_friction.discrepancy.preparation.suspended_load import Mode
 from winch_friction.discrepancy.preparation.wires import agreed_modes
 from winch_friction.discrepancy.proof import at_the_floor
 from winch_friction.discrepancy.regressors import key_of
-from winch_friction.discrepancy.search import long_delay
 from winch_friction.discrepancy.workflow import find_gap
 from winch_friction.physics.channels import CM3_PER_REV
 from winch_friction.physics.corrections import corrected
@@ -125,6 +124,18 @@ def test_a_long_delay_is_taken_out_of_the_runs():
     assert names_of(found) == [{"signal_delay"}]
     assert found.holdout.size_after.value < 0.1 * found.holdout.size_before.value
     assert found.model.corrections[0].value == pytest.approx(0.117, abs=0.01)
+
+
+@pytest.mark.long
+@pytest.mark.parametrize(("law", "delay"), [("drains", 0.0), ("settles", 0.15)])
+def test_a_delay_that_goes_or_comes_to_stay_is_taken_out_of_the_runs(law, delay):
+    found = gap_of(918, "elastic_still", (f"signal_delay:{law}", 1.0))
+    assert names_of(found) == [{"signal_delay"}]
+    assert found.holdout.size_after.value < 0.2 * found.holdout.size_before.value
+    own = {each.name.rpartition("_")[2]: each for each in found.model.corrections}
+    assert own["backlog"].value == pytest.approx({"drains": 0.2, "settles": -0.15}[law], abs=0.02)
+    assert own["backlog"].time_constant == pytest.approx(40.0, rel=0.2)
+    assert (own["delay"].value if "delay" in own else 0.0) == pytest.approx(delay, abs=0.01)
 
 
 @pytest.mark.long

@@ -10,9 +10,10 @@ from winch_friction.discrepancy import search
 from winch_friction.discrepancy.answer import AMBIGUOUS, MISSING, NOTHING, UNEXPLAINED, Verdict
 from winch_friction.discrepancy.candidates.candidate import MOVING, REVERSALS, Candidate, Shape
 from winch_friction.discrepancy.candidates.signals import DELAY, SMALL, tau
+from winch_friction.discrepancy.detectors.delay import long_delay
 from winch_friction.discrepancy.engine.blocks import Slot
 from winch_friction.discrepancy.engine.selection import Selection
-from winch_friction.discrepancy.search import ReversalFinding, long_delay, too_short
+from winch_friction.discrepancy.search import ReversalFinding, too_short
 from winch_friction.discrepancy.thresholds import LIMITS
 
 RNG = np.random.default_rng(0)
@@ -165,9 +166,11 @@ class Explained:
 BASE = Explained()
 
 
-def searching(monkeypatch, kind, found=(), ripple=None, flow=(), reversal=None, continuous=(), also=None):
+def searching(monkeypatch, kind, found=(), ripple=None, flow=(), reversal=None, continuous=(), also=None, passing=None):
     """A search whose every step is told here: what was asked of each."""
-    asked = SimpleNamespace(most=[], left=[], reversed=0, expanded=0, decided=[], known=None, cleaned=[], laid=[])
+    asked = SimpleNamespace(
+        most=[], left=[], reversed=0, expanded=0, decided=[], known=None, cleaned=[], laid=[], late=[]
+    )
     own = Candidate("own", regime=MOVING, continuous=continuous)
     slot = Slot("own", "", (0,), origin=(own, Shape("", {})))
     final = Explained((slot,) if found else ())
@@ -209,6 +212,8 @@ def searching(monkeypatch, kind, found=(), ripple=None, flow=(), reversal=None, 
         "base_of": lambda *_: None, "select": select,
         "near": lambda *_: (),
         "expand_around": expand, "after_reversals": reverse, "decide": decide, "testable": testable,
+        "passing_delay": lambda *_: passing,
+        "without_delay": lambda _, known, suspect, *__: asked.late.append(suspect) or known,
         "most_of_it": lambda *_: None, "dependences": lambda _, left, __: asked.left.append(left) or ["depends"],
         "_cleaned": lambda expansion, *_, **__: expansion, "_waves": lambda *_: {},
     }.items():  # fmt: skip
@@ -251,6 +256,14 @@ def test_runs_are_prepared_around_what_was_found_once_and_again_for_a_shape_from
         assert asked.expanded == times
         assert asked.most == [1] + times * [LIMITS.most_effects]
         assert asked.cleaned == [(("a",), ())] + times * [(("a",), final.slots)]
+
+
+def test_a_delay_that_passes_is_suspected_where_nothing_else_is(monkeypatch):
+    asked, *_ = searching(monkeypatch, MISSING, passing="a passing delay")
+    assert asked.late == ["a passing delay"]
+    finding = (SimpleNamespace(slot=None, rivals=()),)
+    asked, *_ = searching(monkeypatch, MISSING, finding, passing="a passing delay")
+    assert asked.late == []
 
 
 def test_a_law_of_last_resort_is_one_cause_alone(monkeypatch):

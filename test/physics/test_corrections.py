@@ -65,10 +65,11 @@ def typical(name, sign=1.0):
 
 def fullness(correction, time):
     """What a delay is of its value, `time` s from the run's beginning."""
-    if correction.declared.by_time:
-        return time
-    period = correction.time_constant
-    return np.ones_like(time) if period is None else time / period - np.floor(time / period)
+    of, over = correction.name.rpartition("_")[2], correction.time_constant
+    return {
+        "delay": lambda: np.ones_like(time), "clock": lambda: time, "backlog": lambda: np.exp(-time / over),
+        "buffer": lambda: time / over - np.floor(time / over),
+    }[of]()  # fmt: skip
 
 
 def spoiled(run, correction):
@@ -202,7 +203,7 @@ def test_a_buffer_holds_less_than_what_fills_it(upper, period, allowed):
     if allowed:
         assert asked().time_constant == period
     else:
-        with pytest.raises(InputError, match="time_constant must be above its upper bound of 0.5 s, found 0.5 s"):
+        with pytest.raises(InputError, match=r"time_constant must be above its bounds, 0 ... 0.5 s, found 0.5 s"):
             asked()
 
 
@@ -502,6 +503,7 @@ DRIVE, LINES = (*BOTH, "motor_torque"), (*BOTH, "displacement")
 GROUP, NOT_LIVE, OIL = {"by_group": True}, {"live": False}, ("oil_temperature",)
 GAS = GROUP | NOT_LIVE | {"has_time_constant": True}
 CM3, LEAK = 1e-6 / (2.0 * math.pi), ("signal", "m^3/s/Pa", 1.4e-11, 0.0, 1e-9, ("speed_reference",), LINES)
+OF_BACKLOG = NOT_LIVE | {"has_time_constant": True, "course": "backlog"}
 IS = {
     "pressure_offset": ("signal", "Pa", 1.5e5, -50e5, 50e5, BOTH[:1], (), GROUP),
     "pressure_thermal_zero": ("signal", "Pa/K", 1e4, -5e5, 5e5, BOTH[:1], OIL, GROUP),
@@ -524,10 +526,12 @@ IS = {
     ),
     "signal_delay": ("signal", "s", 0.05, -0.5, 0.5, SPEEDS, (), NOT_LIVE),
     "pressure_delay": ("signal", "s", 0.05, -0.5, 0.5, DRIVE, (), NOT_LIVE),
-    "signal_clock": ("signal", "1", 1e-3, -5e-3, 5e-3, SPEEDS, (), NOT_LIVE | {"by_time": True}),
-    "pressure_clock": ("signal", "1", 1e-3, -5e-3, 5e-3, DRIVE, (), NOT_LIVE | {"by_time": True}),
-    "signal_buffer": ("signal", "s", 0.1, 0.0, 0.5, SPEEDS, (), NOT_LIVE | {"has_time_constant": True}),
-    "pressure_buffer": ("signal", "s", 0.1, 0.0, 0.5, DRIVE, (), NOT_LIVE | {"has_time_constant": True}),
+    "signal_clock": ("signal", "1", 1e-3, -5e-3, 5e-3, SPEEDS, (), NOT_LIVE | {"course": "clock"}),
+    "pressure_clock": ("signal", "1", 1e-3, -5e-3, 5e-3, DRIVE, (), NOT_LIVE | {"course": "clock"}),
+    "signal_buffer": ("signal", "s", 0.1, 0.0, 0.5, SPEEDS, (), OF_BACKLOG | {"course": "buffer"}),
+    "pressure_buffer": ("signal", "s", 0.1, 0.0, 0.5, DRIVE, (), OF_BACKLOG | {"course": "buffer"}),
+    "signal_backlog": ("signal", "s", 0.1, -0.5, 0.5, SPEEDS, (), OF_BACKLOG),
+    "pressure_backlog": ("signal", "s", 0.1, -0.5, 0.5, DRIVE, (), OF_BACKLOG),
     "signal_filter": ("signal", "s", 0.05, 0.0, 0.5, SPEEDS, (), NOT_LIVE),
     "pressure_filter": ("signal", "s", 0.05, 0.0, 0.5, DRIVE, (), NOT_LIVE),
     "layer_radius": ("geometry", "m", 0.06, -0.5, 0.5, (), (), {"by_layer": True}),
@@ -543,7 +547,7 @@ IS = {
 }  # fmt: skip
 USUAL = {
     "by_group": False, "by_layer": False, "has_time_constant": False, "live": True, "grows": False, "bends_in": "",
-    "by_time": False, "by_warmth": 1,
+    "course": "", "by_warmth": 1,
 }  # fmt: skip
 
 

@@ -14,7 +14,7 @@ from winch_friction.physics.friction.declared_correction import DECLARED, Action
 from winch_friction.simulation import Simulator, simulate
 
 OF_SENSORS = (Action.OFFSET, Action.SCALE, Action.CURVATURE, Action.BEND, Action.S_SHAPE, Action.DELAY)
-WITHIN_RUNS = [n for n, d in DECLARED.items() if d.late and (d.by_time or d.has_time_constant)]
+WITHIN_RUNS = [n for n, d in DECLARED.items() if d.late and n.rpartition("_")[2] not in ("delay", "filter")]
 SIGNALS = [n for n, d in DECLARED.items() if d.action in OF_SENSORS and n not in WITHIN_RUNS]
 BENDS_AT = {"Pa": 60.0 * BAR, "m^3/rad": 50.0 * CM3_PER_REV}
 PLANT = (Action.WARMTH, Action.HEAT, Action.SLIP, Action.FILTER)

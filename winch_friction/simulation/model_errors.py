@@ -31,7 +31,7 @@ def put_errors(model: FrictionModel, scenario: Scenario, crane: Crane, plant: np
         if not each.holds(scenario.start_time):
             continue
         action = each.declared.action
-        if action in _HIDDEN_INSTEAD or each.declared.late and (each.declared.by_time or each.time_constant):
+        if action in _HIDDEN_INSTEAD or each.declared.course:
             raise InputError(
                 f"model '{model.name}': correction {each.name} cannot be put into the simulated sensors; take it out "
                 f"of the model and use --hide {_HIDDEN_INSTEAD.get(action, 'signal_delay')}"

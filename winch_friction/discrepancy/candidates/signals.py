@@ -32,6 +32,7 @@ from winch_friction.discrepancy.preparation.seen import GroupSignals
 from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.physics.channels import BAR
 from winch_friction.physics.friction.correction import THERMAL_REFERENCE, Correction
+from winch_friction.physics.friction.declared_correction import DECLARED
 from winch_friction.physics.friction.term import Parameter
 
 DELAYS = (0.05, 0.07, 0.1, 0.14, 0.2, 0.28)  # s, each as far from its neighbours as a difference over it bears
@@ -45,10 +46,11 @@ OIL = ("oil_temperature",)
 # K between the coldest run and the warmest: over less, what bends by typically 5 mbar/K^2 is within 0.15 bar of a line
 WARMTH_TO_BEND = 15.0
 SLOWEST_FOR_DELAY = 0.055  # s between samples: half a delay of 0.1 s
-# what is shifted: all that is predicted, as when the pressures come late, or what the speed tells of it
-PRESSURES, SPEED = 1.0, 0.0
+PRESSURES, SPEED = 1.0, 0.0  # what is late, and shifted with it: all that is predicted, or what the speed tells of it
 CLOCKED = 100.0  # s from a run's beginning, by when a clock that drifts is late by what is said of it
-FILLS_IN = "fills_in"  # s, within which a delay grows to what is said of it, before it starts again
+# how a delay changes within a run, by its time constant: it grows and starts again, is worked off, or comes to stay
+FILLS_IN, DRAINS_IN, SETTLES_IN = "fills_in", "drains_in", "settles_in"
+CHANGES = {FILLS_IN: {"buffer": 1.0}, DRAINS_IN: {"backlog": 1.0}, SETTLES_IN: {"delay": 1.0, "backlog": -1.0}}
 SMALL_DELAY = {"ahead": 0.03, "behind": 0.03, "late": SPEED}  # s
 
 p_T = Parameter(
@@ -191,21 +193,26 @@ def late_by(values: Values) -> dict[str, float]:
     side, sign = ("pressure", -1.0) if values["late"] == PRESSURES else ("signal", 1.0)
     if "by_time" in values:
         return {f"{side}_clock": sign / CLOCKED}
-    if FILLS_IN in values:
-        return {f"{side}_buffer": sign}
+    if (how := changes(values)) is not None:
+        return {f"{side}_{name}": sign * share for name, share in CHANGES[how].items()}
     filtered = values.get("filtered", 0.0)
     parts = {f"{side}_delay": sign * (1.0 - filtered), f"{side}_filter": sign * filtered}
     return {name: share for name, share in parts.items() if share}
 
 
-def fills_in(values: Values) -> float | None:
-    """The time in s within which a shape of lateness grows before it starts again; None where it does not."""
-    return values.get(FILLS_IN)
+def changes(values: Values) -> str | None:
+    """How a shape of lateness changes within a run, one of `CHANGES`; None where it does not."""
+    return next((each for each in CHANGES if each in values), None)
+
+
+def late_over(name: str, values: Values) -> dict[str, Any]:
+    """The time constant in s of a correction of a shape of lateness, if it has one, by that name."""
+    return {"time_constant": values[changes(values) or ""]} if DECLARED[name].has_time_constant else {}
 
 
 def _to_delay(found: Estimates, shape: Shape, _: Sides) -> list[Correction]:
-    ties = {"time_constant": fills_in(shape.values)}
-    return [correction(name, found[tau.name], share, **ties) for name, share in late_by(shape.values).items()]
+    late = late_by(shape.values)
+    return [correction(name, found[tau.name], late[name], **late_over(name, shape.values)) for name in late]
 
 
 def signal_candidates() -> list[Candidate]:

@@ -52,10 +52,10 @@ class Correction:
             raise InputError(f"correction '{self.name}' {needs}")
         if self.time_constant is not None and not 0.0 < self.time_constant < float("inf"):
             raise InputError(f"correction '{self.name}': time_constant must be above 0 s, found {self.time_constant:g}")
-        if self.time_constant is not None and own.late and self.upper >= self.time_constant:  # type: ignore[operator]
+        if self.time_constant is not None and own.late and max(map(abs, self.bounds)) >= self.time_constant:
             raise InputError(
-                f"correction '{self.name}': its time_constant must be above its upper bound of {self.upper:g} s, "
-                f"found {self.time_constant:g} s"
+                f"correction '{self.name}': its time_constant must be above its bounds, {self.lower:g} ... "
+                f"{self.upper:g} s, found {self.time_constant:g} s"
             )
         if bool(own.bends_in) != (self.beyond is not None):
             needs = f"needs beyond, in {own.bends_in}" if own.bends_in else "has no beyond"

@@ -57,7 +57,7 @@ class DeclaredCorrection:
     live: bool = True
     grows: bool = False
     bends_in: str = ""  # unit of `beyond`
-    by_time: bool = False  # whether a delay is so much per second since the run began
+    course: str = ""  # of a delay over a run: clock, buffer, backlog (`lateness`); empty: it stays
     by_warmth: int = 1  # power of what the oil is above 40 degC, where that is read
 
     @property
@@ -81,7 +81,7 @@ _OIL = ("oil_temperature",)
 def _signal(
     name: str, action: Action, unit: str, typical: float, reach: float, doc: str, *channels: str, **more: Any
 ) -> DeclaredCorrection:
-    lower = 0.0 if action is Action.FILTER or "has_time_constant" in more else -reach  # neither makes anything early
+    lower = 0.0 if action is Action.FILTER or name.endswith("_buffer") else -reach  # neither makes anything early
     parameter = Parameter(name, unit, typical, lower=lower, upper=reach, doc=doc)
     by_group = any(channel in (*_PRESSURES, "displacement") for channel in channels) and action not in LATE
     return DeclaredCorrection(name, parameter, "signal", action, channels, by_group=by_group, **more)
@@ -150,9 +150,11 @@ _DECLARED = (
             "error of the feedback at a fifth of a stroke, the opposite at four fifths, none at half and at its ends",
             "displacement", bends_in="m^3/rad"),
     *_late("delay", "s", 0.05, 0.5, "how late {} logged"),
-    *_late("clock", "1", 1e-3, 5e-3, "how late {} logged, per second since the run began", by_time=True),
+    *_late("clock", "1", 1e-3, 5e-3, "how late {} logged, per second since the run began", course="clock"),
     *_late("buffer", "s", 0.1, 0.5, "how late {} logged when a buffer is full, which is emptied when a run begins and "
-           "every time constant from then on", has_time_constant=True),
+           "every time constant from then on", course="buffer", has_time_constant=True),
+    *_late("backlog", "s", 0.1, 0.5, "how late {} logged when a run begins, by what is worked off over a time constant",
+           course="backlog", has_time_constant=True),
     *_late("filter", "s", 0.05, 0.5, "time constant of the first-order filter behind which {} logged", Action.FILTER),
     DeclaredCorrection(
         "layer_radius", Parameter("layer_radius", "m", 0.06, -0.5, 0.5, doc="what the crane file's rope radius lacks"),

@@ -124,6 +124,16 @@ def test_a_cell_of_1e30_is_named_with_its_place(tmp_path, capsys):
     assert "sample 42" in first
 
 
+def test_what_to_log_next_is_said_line_by_line(capsys):
+    arguments = ["check", str(TEST), "--crane", "crane_150t", "--model", "a6vm215_crane2"]
+    assert run([*arguments, "--json"]) == 0
+    asked = json.loads(capsys.readouterr().out)["log_next"]
+    assert run(arguments) == 0
+    said = [line for line in capsys.readouterr().out.splitlines() if line.startswith("log next: ")]
+    assert len(said) == len(asked) > 0
+    assert [line.removeprefix("log next: ")[:40] for line in said] == [line[:40] for line in asked]
+
+
 def test_no_crane_is_assumed(tmp_path, capsys):
     path = tmp_path / "plain.csv"
     write_run(replace(read_run(TEST), metadata={}), path)

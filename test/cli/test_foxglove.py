@@ -3,11 +3,15 @@
 import json
 import struct
 import sys
+import threading
+import time
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 from mcap_ros2.decoder import DecoderFactory
 
+from winch_friction.cli import foxglove, live
 from winch_friction.cli.foxglove import serving, written
 from winch_friction.cli.main import run
 from winch_friction.physics.errors import InputError
@@ -198,3 +202,21 @@ def test_a_topic_of_a_type_that_nobody_knows_is_read_past_and_said(tmp_path, cap
     assert "topic '/crane/grease': crane_msgs/msg/Grease" in capsys.readouterr().err
     with serving(tmp_path / "bag", "", 0.0, 0) as address:
         assert address.startswith("ws://")
+
+
+def test_a_bag_is_played_once_for_each_time_that_somebody_asks(monkeypatch):
+    """Played again and again for whoever asked once, its end is never seen."""
+    asked, ended, played = threading.Event(), threading.Event(), []
+    monkeypatch.setattr(live, "bag_messages", lambda *_: played.append("begins") or iter(["message"]))
+    relay = SimpleNamespace(take=played.append)
+    job = threading.Thread(target=foxglove._pump, args=(None, relay, None, Path("bag"), 1.0, asked, ended), daemon=True)
+    job.start()
+    for k in range(2):
+        asked.set()
+        began = time.monotonic()
+        while (len(played) < 2 * (k + 1) or asked.is_set()) and time.monotonic() - began < 5.0:
+            time.sleep(0.01)
+    time.sleep(0.1)  # and not a third time
+    ended.set()
+    job.join(5.0)
+    assert played == ["begins", "message"] * 2

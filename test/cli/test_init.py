@@ -107,6 +107,17 @@ def test_any_name_is_read_back_as_it_was_given(name, tmp_path, monkeypatch, caps
     assert load_map(tmp_path / "map.yaml").crane == load_scenario("scenario.yaml").crane == name
 
 
+def test_a_model_that_assumes_nothing_is_of_its_crane_whatever_its_own_name(tmp_path, monkeypatch):
+    """No motor like an electric drive's is known to scale from: a file without a term, for that crane alone."""
+    monkeypatch.chdir(tmp_path)
+    electric = ["--drive", "electric", "--load", "20", "--gear-ratio", "50", "--radius", "0.5", "--motors", "2",
+                "--inertia", "1"]  # fmt: skip
+    assert run(["init", "crane", "--name", "deck", *electric, "--layers", "1", "--wire", "100"]) == 0
+    assert run(["init", "model", "--crane", "deck.yaml", "--name", "bare", "--out", "bare.yaml"]) == 0
+    model = load_model("bare.yaml")
+    assert (model.name, model.crane, model.terms) == ("bare", "deck", ())
+
+
 def test_falls_are_so_many_ropes_side_by_side_at_a_part_of_the_radius(own, capsys):
     assert run(["init", "crane", *CRANE, "--falls", "2", "--out", "two.yaml"]) == 0
     one, two = load_crane("crane_50t.yaml"), load_crane("two.yaml")
@@ -283,3 +294,15 @@ def test_a_name_is_no_path(name, tmp_path, monkeypatch, capsys):
     assert run(["init", "crane", *CRANE, "--name", name]) == 2
     assert "--out says where" in capsys.readouterr().err
     assert not list(tmp_path.iterdir())
+
+
+def test_a_torque_limit_goes_with_the_number_of_motors_and_their_size(tmp_path, monkeypatch):
+    """That of the shipped crane, 11 motors of 215 cm^3/rev, in proportion to what all motors together displace."""
+    monkeypatch.chdir(tmp_path)
+    shipped, limits = load_crane("crane_150t").absolute_torque_limit, []
+    for motors, displacement in (("5", "160"), ("10", "160"), ("5", "80")):
+        size = ["--motors", motors, "--displacement", displacement]
+        assert run(["init", "crane", *CRANE[:4], *size, *CRANE[8:], "--out", f"{motors}_{displacement}.yaml"]) == 0
+        limits.append(load_crane(f"{motors}_{displacement}.yaml").absolute_torque_limit)
+    own = shipped * 160.0 / 215.0 / 11.0
+    assert limits == pytest.approx([5.0 * own, 10.0 * own, 2.5 * own], rel=0.01)

@@ -4,21 +4,26 @@ import json
 import re
 from pathlib import Path
 from types import SimpleNamespace
+from urllib.error import HTTPError
+from urllib.parse import urljoin
+from urllib.request import urlopen
 
 import numpy as np
 import pytest
 
-from winch_friction.cli import bench, gap_blind, gap_output, identify, identify_output, provenance, replay
+from winch_friction.cli import bench, gap, gap_blind, gap_output, identify, identify_output, provenance, replay
 from winch_friction.cli.chart import chart
 from winch_friction.cli.compare import _loads, _refuse_two_cranes, _said
 from winch_friction.cli.console import show_json, show_table
 from winch_friction.cli.convert import _without_topic
-from winch_friction.cli.dashboard import Broadcast
+from winch_friction.cli.dashboard import Broadcast, serving
 from winch_friction.cli.fleet import _flags, _status, _storage_options
 from winch_friction.cli.inputs import refuse_copies, refuse_existing, refuse_foreign, refuse_input_as_output
 from winch_friction.cli.simulate import _effect, _truth_of
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.signals import Run
+from winch_friction.records.strict_yaml import shipped
+from winch_friction.simulation import fmu
 
 
 @pytest.fixture
@@ -436,6 +441,18 @@ def test_a_page_that_listens_for_days_keeps_ten_minutes():
     assert json.loads(sent._sent[-1]) == {"k": 6000}
 
 
+def test_a_page_finds_its_stream_beside_it_and_nothing_else_is_there():
+    frames = ({"k": k, "status": {}} for k in (1, 2))
+    with serving(frames, 0) as address, urlopen(address, timeout=10) as page:
+        (stream,) = re.findall(r'EventSource\("(.*?)"\)', page.read().decode())
+        with urlopen(urljoin(address, stream), timeout=10) as events:
+            assert events.headers["Content-Type"] == "text/event-stream"
+            said = re.findall(r"^data: ({.*})$", events.read().decode(), re.MULTILINE)
+        with pytest.raises(HTTPError, match="404"):
+            urlopen(urljoin(address, "other"), timeout=10)
+    assert [json.loads(each)["k"] for each in said] == [1, 2]
+
+
 # -- what is never replaced
 @pytest.mark.parametrize(
     ("name", "folder", "overwrite", "said"),
@@ -630,3 +647,25 @@ def test_a_fleet_says_who_changed_in_which_month_and_unit(tmp_path, monkeypatch,
     assert rows["unlike the others"]["level"] == 40.0
     assert rows["unlike the others"]["fleet"] == 2.0
     assert capsys.readouterr().out == "a note\n"
+
+
+# -- a simulation of one's own
+def test_an_own_simulation_is_asked_for_every_run_and_told_what_is_which_column(monkeypatch):
+    monkeypatch.setattr(fmu, "load_fmu_map", lambda path: f"links of {path}")
+    monkeypatch.setattr(fmu, "simulate_fmu", lambda path, links, run: (str(path), links, run))
+    runs = ["first", "second", "third"]
+    found = gap._simulated(runs, Path("own.fmu"), Path("own.yaml"))
+    assert found == [("own.fmu", "links of own.yaml", run) for run in runs]
+    assert gap._simulated(runs, None, None) == runs
+    for half in ((Path("own.fmu"), None), (None, Path("own.yaml"))):
+        with pytest.raises(InputError, match="belong together"):
+            gap._simulated(runs, *half)
+
+
+def test_whoever_names_no_model_of_another_crane_is_told_which_are_shipped_for_it(tmp_path):
+    with pytest.raises(InputError, match=r"which model of crane 'emps'.*shipped for it: emps_symmetric, emps_viscous"):
+        gap._usual_model("emps", [])
+    own = tmp_path / "own.yaml"
+    own.write_text(shipped("cranes", "crane_150t").read_text().replace("name: crane_150t", "name: nord", 1))
+    with pytest.raises(InputError, match=r"which model of crane 'nord'.*`winch-friction init model` writes one"):
+        gap._usual_model(str(own), [])

@@ -1,11 +1,13 @@
 """The parts of the torque balance in numbers by hand: what hangs, what swings, what rubs, and errors within limits."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy.optimize import lsq_linear
 from scipy.signal import freqz
 
-from winch_friction.commissioning import balance, mistakes
+from winch_friction.commissioning import balance, diagnose, mistakes
 from winch_friction.commissioning.balance import closure, static_torque, typical_friction
 from winch_friction.commissioning.view import MOVING, GroupView, RunView, broken_cells, usable, view_of, views_of
 from winch_friction.physics.channels import GRAVITY
@@ -238,6 +240,9 @@ def test_a_layer_is_doubted_unless_every_run_lies_on_it(crane_150t):
     assert doubted(2.0, 3.0) == radii
     words = [each.words for each in mistakes._layers([view(layer=2.0 * ONE)], crane_150t)]
     assert words[0] == "the wire lies on layer 1, not where wire_layer says"
+    # a drum of one layer has no other that the wire could lie on, whatever is logged
+    flat = replace(crane_150t, drum=replace(crane_150t.drum, layer_radii=crane_150t.drum.layer_radii[:1]))
+    assert list(mistakes._layers([view(layer=2.0 * ONE)], flat)) == []
 
 
 def test_a_tare_is_a_twentieth_of_what_the_weakest_run_holds_at_most():
@@ -257,3 +262,23 @@ def test_a_displacement_that_is_negative_at_times_swivels_over_centre():
     assert not mistakes._negative(turned, "other")
     np.testing.assert_array_equal(mistakes._upright(swivelled).groups["main"].displacement,
                                   swivelled.groups["main"].displacement)  # fmt: skip
+
+
+def test_a_sign_of_the_heave_may_be_wrong_though_some_runs_have_none(crane_150t):
+    """Runs at the quay, where the crane stands still, beside those at sea."""
+
+    def doubted(*heaves):
+        found = mistakes._signs([view(heave=heave, rates={}) for heave in heaves], ("main",), crane_150t)
+        return "heave_velocity" in {each.channel for each in found}
+
+    assert doubted(None, ONE)
+    assert not doubted(None, None)
+
+
+def test_a_delay_is_looked_for_beside_the_likeliest_mistake_alone(monkeypatch):
+    """It takes whole records to try."""
+    monkeypatch.setattr(diagnose, "_free", lambda views: [])
+    firsts = [mistakes.Mistake("scale", name, name, 1.0, lambda each: each) for name in ("hook_load", "displacement")]
+    late = mistakes.Mistake("delay", "motor_speed", "late", 1.0, lambda each: each)
+    found = diagnose._beside(firsts, [*firsts, late], [view()])
+    assert [tuple(part.channel for part in each.parts) for each in found] == [("hook_load", "motor_speed")]

@@ -57,6 +57,8 @@ def test_a_time_in_ms_from_any_origin_shows_in_the_rates_that_other_channels_tel
 @pytest.mark.parametrize(("rate", "found"), [(4.0, {"rate": "warning"}), (6.0, {})])
 def test_a_log_too_slow_for_reversals_is_worth_a_word(rate, found):
     assert said(np.arange(100) / rate) == found
+    for each in clock_findings(Run("r", {"time": np.arange(100) / rate})):  # samples a second, for machines too
+        assert each.evidence == {"rate": pytest.approx(rate)}
 
 
 @pytest.mark.parametrize(

@@ -16,6 +16,15 @@ def test_what_is_taught_is_said_by_what_is_left_of_the_models_own_sigma(after, w
     assert Taught("C1", 0.2, 0.2 * after).words == words
 
 
+def test_runs_that_show_nothing_leave_the_models_own_sigma_relative_to_each_value(crane2_model):
+    """A standard deviation, in parts of the value that it is of."""
+    told, _ = excitation.taught([], crane2_model)
+    plain = excitation._with_prior(crane2_model)
+    own = {n: s / abs(v) for n, v, s in zip(plain.parameter_names, plain.values, plain.std, strict=True)}
+    for each in told:
+        assert each.after == each.before == pytest.approx(own[each.name], rel=1e-3)
+
+
 def test_no_test_is_asked_for_whose_pressure_the_motors_do_not_hold(crane_150t):
     """At half the displacement, half the load; of the grid each other one is there."""
     able = replace(crane_150t, rated_speed=0.0, rated_load=0.0)

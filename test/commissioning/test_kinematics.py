@@ -48,6 +48,11 @@ def test_a_channel_that_fits_only_when_it_is_shifted_is_late(lag):
     assert score("speed_reference", np.roll(SPEED, lag))[1] >= LATE
 
 
+def test_one_late_channel_is_a_hint_and_a_second_names_the_mistake():
+    late = score("shaft_angle", np.roll(SPEED, 3))[1]
+    assert late < SURE <= 2.0 * late
+
+
 def test_a_channel_that_does_not_follow_is_left_out_unless_it_must():
     noise = np.random.default_rng(0).standard_normal(300)
     assert score("heave_velocity", noise) is None

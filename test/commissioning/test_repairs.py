@@ -101,6 +101,10 @@ def test_a_size_without_a_sign_takes_it_from_a_channel_that_has_one():
     np.testing.assert_array_equal(found.speed, SPEED)
     untold = view(speed=np.abs(SPEED), rates={"heave_velocity": -SPEED})
     assert mistakes._signed(untold) is untold
+    # nor of channels that go one way as well: a reference that is logged without its sign, a wire that is paid out only
+    for one_way in (np.abs(SPEED), -np.abs(SPEED)):
+        alike = view(speed=np.abs(SPEED), rates={"speed_reference": one_way})
+        assert mistakes._signed(alike) is alike
 
 
 def test_the_sign_of_a_heave_is_that_of_all_that_it_tells():

@@ -9,7 +9,7 @@ import pytest
 
 from winch_friction.compensation import CompensatorConfig, FeedforwardCompensator
 from winch_friction.compensation.parts import FrictionLaw
-from winch_friction.compensation.safe_output import SafeOutput
+from winch_friction.compensation.safe_output import LONGEST_AGAINST, LONGEST_LAG, SafeOutput
 from winch_friction.physics.channels import BAR, CM3_PER_REV
 from winch_friction.physics.errors import InputError, from_mapping
 from winch_friction.physics.friction import FrictionModel, term_named
@@ -488,6 +488,14 @@ def test_what_turns_with_every_wave_is_no_older_than_half_a_second(name):
         CompensatorConfig(max_ages={name: 0.51})
 
 
+@pytest.mark.parametrize("age", [0.0, 0.0009, 3601.0])
+def test_an_input_that_may_have_no_age_at_all_or_an_endless_one_is_refused(age):
+    """Of no age is no value but at the instant of its own message: no torque would ever come."""
+    with pytest.raises(InputError, match="max_ages"):
+        CompensatorConfig(max_ages={"hook_load": age})
+    assert CompensatorConfig(max_ages={"hook_load": 0.001}).max_ages["hook_load"] == 0.001
+
+
 @pytest.mark.parametrize(("limit", "bound"), [(math.inf, 2000.0), (1e4, 2000.0), (700.0, 700.0)])
 def test_a_limit_that_is_set_is_never_above_the_cranes_own(limit, bound):
     each = compensator(absolute_limit=limit, slew_limit=1e6)
@@ -669,3 +677,14 @@ def test_a_model_that_reads_no_load_asks_for_none_and_says_none():
     out = each.step(ahc_sample(0.0, 100.0))
     assert (out.drum_torque, each.status()["drum_torque"]) == (0.0, 0.0)
     assert compensator().step(ahc_sample(0.0, 100.0)).drum_torque == CRANE.drum_torque(55e3, math.nan)
+
+
+@pytest.mark.parametrize("lead", [0.0, 0.2])
+def test_a_torque_that_looks_ahead_may_push_against_the_measured_motion_for_as_much_longer(lead):
+    """The command is ahead of the winch by the look-ahead; what lasts longer than that and a lag is let go."""
+    each = compensator(lead=lead)
+    _, began = run_up(each)
+    turned = began + PERIOD * np.arange(40)
+    outs = [each.step(replace(ahc_sample(t, 100.0), motor_speed=-100.0)) for t in turned]
+    held = next(t for t, out in zip(turned, outs, strict=True) if out.friction_torque == 0.0) - began
+    assert held == pytest.approx(lead + LONGEST_LAG + LONGEST_AGAINST, abs=2.5 * PERIOD)

@@ -1,5 +1,7 @@
 """One model as the compensator uses it: what its gains leave of the torque and of its bound."""
 
+import math
+
 import pytest
 
 from winch_friction.compensation.parts import FrictionLaw
@@ -57,3 +59,18 @@ def test_a_memory_outlasts_a_motor_group_that_comes_or_goes(crane_150t):
     assert law.torque(two, 2) == law.torque(one, 1) == moved
     law.reset()
     assert law.torque(one, 1) == fresh
+
+
+@pytest.mark.parametrize("error", [OverflowError, ValueError, ZeroDivisionError])
+def test_a_law_that_cannot_be_evaluated_is_no_number_and_not_no_friction(crane_150t, monkeypatch, error):
+    """Nothing is fed forward from it, and the compensator says so; a zero would be believed."""
+
+    def fails(*_):
+        raise error
+
+    sample = Sample(0.0, 5.0, groups={"active": GroupSample(145e5, 25e5, 3.4e-5)})
+    point = sample_operating_point(sample, crane_150t, drum_torque=crane_150t.drum_torque(55e3), speed=5.0)
+    law = FrictionLaw(SEED, {})
+    assert law.torque(point, 1) > 0.0
+    monkeypatch.setattr(law, "_contributions", fails)
+    assert math.isnan(law.torque(point, 1))

@@ -130,3 +130,25 @@ def test_once_the_end_has_begun_no_sample_takes_the_torque_up_again():
     other = Driven()
     other.output.end(other.stamp)
     assert other.go(PERIOD, CARRIED)[0] < CARRIED, "also where none was published between"
+
+
+@pytest.mark.parametrize(("pace", "followed"), [(1.0, 1.0), (1.4, 1.4), (4.0, 1.5)])
+def test_stamps_that_run_faster_than_the_clock_move_the_torque_half_as_fast_again_at_most(pace, followed):
+    """N m per second of the clock, not of a sender's stamps; an age limit was saved up before, and is gone."""
+    driven = Driven(slew=1000.0, torque=199.0)
+    told = driven.go(8.0 * PERIOD, -1000.0, motion=math.nan, pace=pace)
+    assert told[2] - told[5] == pytest.approx(3.0 * PERIOD * 1000.0 * followed, rel=0.02)
+
+
+@pytest.mark.parametrize("way", [1.0, -1.0])
+def test_what_is_held_before_a_reversal_goes_as_quickly_whichever_way_it_pushes(way):
+    """In a silence that may outlast the motion's way; at a slow reversal's limit as well."""
+    driven = Driven()
+    driven.go(2.0, way * CARRIED, motion=way * 50.0)
+    driven.output.restrict(1.0)
+    driven.stamp, driven.now = driven.stamp + PERIOD, driven.now + PERIOD
+    driven.output.arrive(driven.stamp, driven.now)
+    held = driven.output.follow(way * CARRIED, 1000.0, True, True, reversal=0.5 * HOLD, motion=way * 50.0)
+    assert held == pytest.approx(way * CARRIED)
+    left = driven.output.remaining(driven.stamp + HOLD + 0.5 * LONGEST_AGAINST)
+    assert left == pytest.approx(0.5 * way * CARRIED, rel=0.05)

@@ -303,3 +303,14 @@ def test_a_law_of_the_data_stands_where_it_leaves_half_of_what_names_do(monkeypa
     assert asked[1:] in ([], [found])
     selection.found.clear()
     assert again.by_surfaces(STUDY, before) is before  # the data know none
+
+
+def test_effects_stand_in_the_order_in_which_they_were_found(monkeypatch):
+    """The largest is found first, and a reader looks at it first; what one name has found twice stands once."""
+    monkeypatch.setattr(workflow, "_effect", lambda _, own, *__: (own[0].slot.name, len(own)))
+    names = ("viscous", "coulomb", "tare_load", "coulomb")
+    found = [SimpleNamespace(slot=SimpleNamespace(name=name)) for name in names]
+    search = SimpleNamespace(reversal=None, ripple=None, flow=())
+    tied = dict.fromkeys(names)
+    said = workflow._effects(search, found, None, tied)
+    assert said == (("viscous", 1), ("coulomb", 2), ("tare_load", 1))

@@ -9,7 +9,7 @@ import pytest
 from winch_friction.discrepancy.candidates import families as module
 from winch_friction.discrepancy.candidates import friction
 from winch_friction.discrepancy.candidates.candidate import Shape
-from winch_friction.discrepancy.candidates.families import CURVES, FLOW, LEFT, LOAD, SPEED, free_members
+from winch_friction.discrepancy.candidates.families import CURVES, FLOW, LEFT, LOAD, SPEED, free_members, literature
 from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.physics.friction import symbols, term_named
 from winch_friction.physics.friction.symbols import WINCH_SIGNALS
@@ -53,6 +53,14 @@ def test_a_signal_of_one_value_draws_no_curve(load, drawn):
     still = run()
     still.point[[each.name for each in WINCH_SIGNALS].index("drum_torque")] = np.full(COUNT, 4e5)
     assert module._free(row_of(LOAD), [still]) is None
+
+
+@pytest.mark.parametrize(("spread", "drawn"), [(0.9, False), (1.1, True), (20.0, True)])
+def test_an_oil_that_was_warmer_by_more_than_a_kelvin_draws_a_curve(spread, drawn):
+    """Its zero means nothing, so that a share of its reading is no measure of what a sensor tells apart."""
+    warm = run()
+    warm.point[[each.name for each in WINCH_SIGNALS].index("oil_temperature")] = 40.0 + spread * AT
+    assert (module._free(row_of("oil_temperature"), [warm]) is not None) is drawn
 
 
 def test_a_groups_flow_is_that_of_its_motors_and_what_is_left_of_their_stroke_is_of_each():
@@ -278,3 +286,14 @@ def test_a_curve_has_more_knots_than_a_surface_and_a_finer_one_has_them_in_betwe
 )
 def test_what_multiplies_a_curve_leaves_it_the_unit_of_a_torque_less(times, unit):
     assert module._unit(times) == unit
+
+
+def test_a_law_of_one_direction_is_there_for_each_of_the_two():
+    """Which way a gear or a valve loses more is nothing that its kind tells."""
+    one_way = [each for each in literature() if each.law_name.endswith(("one_way", "one way", "one direction alone"))]
+    assert len(one_way) >= 5
+    for each in one_way:
+        (uneven,) = {name for shape in each.shapes([]) for name in shape.values if name.startswith("b_")}
+        weights = {shape.values[uneven] for shape in each.shapes([])}
+        assert weights == {-weight for weight in weights}, each.law_name
+        assert {-1.0, 1.0} <= weights, each.law_name

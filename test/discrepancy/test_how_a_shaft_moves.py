@@ -144,6 +144,9 @@ def test_a_touch_of_zero_that_hides_in_the_smoothed_speed_counts_as_one():
 def test_a_reversal_between_two_samples_leaves_both_out():
     still = module._near_zero(np.array([9.0, 5.0, -6.0, -9.0, -0.5, -9.0]), 0.5)
     assert still.tolist() == [False, True, True, False, True, False]
+    # a sample that stands at nothing is left out itself; those beside it lie on one side of it
+    still = module._near_zero(np.array([9.0, 0.0, 9.0, 0.0, -9.0]), 0.5)
+    assert still.tolist() == [False, True, False, True, False]
 
 
 def test_a_hole_longer_than_half_a_window_takes_as_much_on_either_side_and_a_shorter_one_none():

@@ -127,6 +127,23 @@ def test_beside_a_gas_only_runs_without_it_say_what_shows_after_reversals(monkey
     assert seen == asked
 
 
+def test_what_comes_with_the_shafts_angle_is_looked_for_in_the_training_runs_alone(monkeypatch):
+    """A ripple that only locked runs show is theirs to judge, not to find."""
+    runs = [SimpleNamespace(name=name) for name in ("a", "locked", "b")]
+    seen = []
+
+    def detect(own_runs, own_prepared, *_):
+        seen.append(([run.name for run in own_runs], list(own_prepared)))
+        raise StopIteration
+
+    monkeypatch.setattr(search.angle, "detect", detect)
+    given = SimpleNamespace(model=None, prepared=[0, 1, 2], runs=runs, crane=None, once=lambda _, make: make())
+    study = SimpleNamespace(split=SimpleNamespace(train=("a", "b")), rng=RNG)
+    with pytest.raises(StopIteration):
+        search.search_runs(study, given)
+    assert seen == [(["a", "b"], [0, 2])]
+
+
 # -- after reversals
 def test_beside_a_delay_nothing_is_looked_for_after_reversals():
     explanation = SimpleNamespace(slots=(SimpleNamespace(name="signal_delay"),))
@@ -139,7 +156,8 @@ def test_what_shows_after_reversals_holds_by_the_locked_runs_each_in_its_own_noi
     runs = [SimpleNamespace(name=name, used=np.ones(1, bool)) for name in ("train", "loud", "quiet")]
     asked = []
 
-    def build(chosen, *_, **__):
+    def build(chosen, _, by_sample=False):
+        assert by_sample  # the mean of a block, of a second or more, holds next to nothing of what a reversal shows
         asked.extend(run.name for run in chosen)
         x = np.column_stack([np.ones(400), np.repeat([10.0 * loud, quiet], 200)])
         y = np.repeat([10.0, 1.0], 200)

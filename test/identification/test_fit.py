@@ -108,7 +108,7 @@ def test_standard_errors_cover_the_spread_of_repeated_noise(table_215):
 def test_clustered_errors_widen_the_covariance(table_215):
     data = table_215.fit_data("equal")
     model = load_model("a6vm215")
-    jacobian = CountedModel(model, data).columns(model.values)
+    jacobian = CountedModel(model, data).columns()
     shared = np.where(data.group > 150, 1.0, -1.0)
     alone = np.random.default_rng(1).permutation(shared)
     wide, narrow = (np.diag(clustered_covariance(jacobian, error, data, np.ones(5))) for error in (shared, alone))

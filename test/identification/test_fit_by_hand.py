@@ -74,7 +74,7 @@ def test_what_is_locked_is_taken_out_and_the_cost_is_weighted():
     assert counting.cost((2.0,)) == pytest.approx(0.0)
     error = 0.5 * data().torque
     assert counting.cost((1.0,)) == pytest.approx(float(np.array([1.0, 2.0, 3.0]) @ error**2))
-    np.testing.assert_allclose(counting.columns((7.0,))[:, 0], 0.5 * data().torque)  # linear: torque per unit
+    np.testing.assert_allclose(counting.columns()[:, 0], 0.5 * data().torque)  # linear: torque per unit
     assert counting.evaluations == 3
 
 
@@ -357,7 +357,7 @@ def test_a_shape_is_looked_for_in_all_of_its_bounds():
 
 def test_every_column_of_a_jacobian_is_counted_and_every_observation_has_all_its_columns():
     counting = CountedModel(BENT, bent_data())
-    counting.columns(BENT.values)
+    counting.columns()
     assert counting.evaluations == 4
     counting.torque(BENT.values)
     counting.cost(BENT.values)

@@ -26,3 +26,9 @@ def test_a_simpler_model_is_as_good_within_one_standard_error_of_its_excess(more
     excess = more * np.std(scatter, ddof=1) / np.sqrt(9.0) + scatter
     rich, simple = score("rich", 6, np.full(9, 4.0)), score("simple", 3, 4.0 + excess)
     assert choose([rich, simple]).name == chosen
+
+
+def test_errors_count_by_their_squares_where_they_are_of_different_sizes():
+    """As they do in the fit and in the held-out error: a little worse where all is small is outweighed."""
+    rich, simple = score("rich", 6, np.repeat([0.0, 16.0], 4)), score("simple", 3, np.repeat([1.0, 3.9**2], 4))
+    assert choose([rich, simple]).name == "simple"

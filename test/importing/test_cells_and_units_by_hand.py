@@ -357,6 +357,15 @@ def test_the_slope_of_a_position_is_its_speed_and_fast_noise_is_left_out():
     assert np.abs(half)[500:-500].max() == pytest.approx(np.pi, rel=0.02)
 
 
+@pytest.mark.parametrize("step", [0.0, -0.02, np.nan])
+def test_a_position_has_no_slope_where_its_times_do_not_rise(step):
+    """A clock that was set back once, or rows of one tick: the slope there is of another sign or none."""
+    time = np.cumsum(np.append(np.full(100, 0.02), step if np.isfinite(step) else 0.02))
+    time[-1] += 0.0 if np.isfinite(step) else np.nan
+    with pytest.raises(InputError, match="rows or more whose times rise"):
+        _rate("x", np.sin(np.arange(101.0)), time, 1.0)
+
+
 # -- the rope beside the motor
 @pytest.mark.parametrize("sign", [1.0, -1.0])
 def test_the_rope_is_set_against_the_motor_by_gear_and_drum(sign, crane_150t):

@@ -91,3 +91,13 @@ def test_a_column_of_the_right_name_without_a_number_is_said_to_have_none(tmp_pa
     ]
     assert run(words) == 2
     assert "not used are 'motor_speed [rpm]' ('motor_speed [rpm]' without a number in it)" in capsys.readouterr().err
+
+
+def test_of_a_position_it_is_said_that_its_speed_is_taken(tmp_path):
+    log = tmp_path / "seapath.csv"
+    for unit, said in (("m", True), ("m/s", False)):
+        log.write_text(HEAVE.replace("heave [m]", f"heave [{unit}]"))
+        (tmp_path / "map.yaml").unlink(missing_ok=True)
+        assert proposed(log, tmp_path) == 0
+        text = (tmp_path / "map.yaml").read_text()
+        assert ("a position: its speed is taken" in text) is ("differentiate:" in text) is said

@@ -252,3 +252,11 @@ def test_rows_of_a_tick_lie_evenly_where_no_clock_is_steady():
     assert (found[0], found[-1]) == (0.5, 5.0)
     backwards = np.array([0.0, 2.0, 1.0])
     assert spread_ticks(backwards) is backwards
+
+
+def test_a_value_climbs_by_three_steps_or_more_that_follow_each_other_the_same_way():
+    """One step is what a historian leaves of a leap, two of one sign are often noise."""
+    steps = np.array([3.0, -3.0, 2.0, 2.0, -1.0, 2.0, 2.0, 2.0, -0.1, -0.1, -0.1, 4.0])
+    assert one_clock._climbed(steps, np.ones(12, bool), 1.0) == pytest.approx(6.0)
+    late = np.array([True] * 6 + [False] + [True] * 5)  # a silence within the three
+    assert one_clock._climbed(steps, late, 1.0) == 0.0

@@ -49,6 +49,11 @@ def test_what_controllers_and_spreadsheets_write_of_a_time(cell, said):
     assert said is None or clock_seconds(parts) == pytest.approx(said)
 
 
+@pytest.mark.parametrize("cell", ["20240615T120000", "20240615 120000", "20240615_12:00:00", "20240615-12:00:00"])
+def test_a_date_and_a_clock_without_marks_are_read(cell):
+    assert seconds(TimeBase("datetime"), texts(cell)) == pytest.approx([NOON])
+
+
 def test_a_zone_of_half_an_hour_is_one():
     assert zone_seconds("+0530") == 19_800.0
 

@@ -11,6 +11,7 @@ from winch_friction.importing.kinematics import along_speed, rope_over_motor
 from winch_friction.physics.channels import FASTEST_ROPE, GRAVITY
 from winch_friction.physics.signals import Run
 from winch_friction.physics.winch.crane import ELECTRIC, POWER, Drive, Drum
+from winch_friction.records.crane_file import load_crane
 
 TIME = np.arange(2000) * 0.05
 SPEED = 100.0 * np.sin(0.4 * TIME)
@@ -67,6 +68,22 @@ def test_the_torque_of_a_load_is_that_of_its_layer(columns, torque, crane):
 
 def test_without_a_load_there_is_no_torque_of_it(crane):
     assert balance.load_torque({"motor_speed": SPEED}, crane) is None
+
+
+@pytest.mark.parametrize("lacking", ["main.pressure_a", "main.displacement"])
+def test_of_a_group_that_is_logged_in_part_there_is_no_torque_of_the_motors(lacking, crane):
+    """And no balance: a map's other columns are proposed all the same."""
+    columns = {name: values for name, values in logged().items() if name != lacking}
+    assert balance.drive_torque(logged(), crane) is not None
+    assert balance.drive_torque(columns, crane) is None
+    assert balance.closure(columns, crane) is None
+
+
+@pytest.mark.parametrize("name", ["emps", "worm_drive"])
+def test_of_an_electric_drive_whose_torque_is_not_logged_there_is_none(name):
+    columns = {"time": TIME, "motor_speed": SPEED, "load_torque": 10.0 * ONE}
+    assert balance.drive_torque(columns, load_crane(name)) is None
+    assert balance.closure(columns, load_crane(name)) is None
 
 
 def test_a_balance_closes_within_a_fifth_of_the_load_and_a_fortieth_of_the_capacity(crane):

@@ -117,7 +117,9 @@ def test_a_message_that_is_overtaken_now_and_then_is_no_wrong_order(heard: Heard
     heard.health.report()
     heard.hear(1.0)  # fifty messages
     heard.gate.arrivals[PRESSURE].after += after
-    assert ("comes after the speed" in heard.health.report().summary) is said
+    report = heard.health.report()
+    assert ("comes after the speed" in report.summary) is said
+    assert report.level == (WARN if said else OK)
 
 
 @pytest.mark.parametrize(("ahead", "said"), [(0.3, True), (0.08, False)])

@@ -24,6 +24,7 @@ from winch_friction.nodes.base import ERROR, WARN
 from winch_friction.nodes.compensator import CompensatorNode
 from winch_friction.nodes.estimator import EstimatorNode
 from winch_friction.nodes.remote import QUESTIONS, RemoteNode
+from winch_friction.nodes.simulator import SimulatorNodeOptions
 from winch_friction.online.compensator import LEARNED_AT
 from winch_friction.physics.errors import InputError
 from winch_friction.records.strict_yaml import config_directory
@@ -169,6 +170,22 @@ def test_a_process_that_was_restarted_waits_where_it_is_told_to(active: Any) -> 
     node.trigger_configure()
     assert node.service.law.status()["enabled"]
     assert not node.set_parameters([Parameter("starts_enabled", value=True)])[0].successful
+
+
+def test_a_compensator_feeds_forward_from_its_start_unless_told_otherwise(active: Any) -> None:
+    assert active(CompensatorNode).service.law.status()["enabled"]
+
+
+@pytest.mark.parametrize("kind", [CompensatorNode, EstimatorNode], ids=lambda kind: kind.executable)
+def test_how_long_a_speed_may_be_silent_and_how_far_ahead_stamped_are_two_limits(active: Any, kind: type) -> None:
+    """A late speed is lost after its own limit; a stamp from a clock that is ahead is refused by the other."""
+    gate = active(kind, watchdog_timeout=0.3, stamp_window=2.0).service.inputs
+    assert (gate.options.watchdog_timeout, gate.options.stamp_window) == (0.3, 2.0)
+
+
+def test_a_simulated_plant_of_which_nothing_is_said_turns_harder_than_its_seed() -> None:
+    """Else there were nothing to learn for whoever starts the simulation as the README does."""
+    assert SimulatorNodeOptions().friction_factor == 1.3
 
 
 def test_a_model_that_waits_is_dropped_with_the_topic_that_it_came_from(active: Any) -> None:

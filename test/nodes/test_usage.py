@@ -29,6 +29,9 @@ def test_help_is_shown_and_no_node_started(kind: Any, arguments: list[str], caps
     assert said.startswith(f"usage: {kind.executable} [--ros-args")
     assert "\n  watchdog_timeout (0.1 s): time without a speed after which the inputs count as lost\n" in said
     assert ("\n  scale (" in said) == (kind is CompensatorNode)
+    # an option by name of which nothing is set says so, one of which something is names it
+    assert ("\n  gains (one number for each {name}: none given): " in said) == (kind is CompensatorNode)
+    assert ("\n  max_ages (one number for each {name}: hook_load 2.0, " in said) == (kind is CompensatorNode)
 
 
 @pytest.mark.parametrize(

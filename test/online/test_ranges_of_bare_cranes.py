@@ -16,6 +16,9 @@ def test_a_crane_without_motors_and_rated_load_takes_what_any_cell_may_say(crane
     bare = replace(crane_150t, rated_load=0.0, max_displacement=0.0)
     assert ChannelRanges(bare).load == LIMITS["hook_load"][1]
     assert ChannelRanges(replace(crane_150t, rated_load=100e3)).load == 100e3 * LOAD_MARGIN
+    for turning in ("motor_speed", "speed_reference"):  # and of no rated speed: whatever may be a speed
+        fastest = LIMITS["motor_speed"][1]
+        assert ChannelRanges(replace(bare, rated_speed=0.0)).range(turning) == (-fastest, fastest)
 
 
 def test_a_group_that_is_swung_out_carries_no_more_pressure_than_its_floor_does(crane_150t):

@@ -32,6 +32,12 @@ def test_a_parameter_of_either_sign_may_move_by_sigma(value, std, reach):
     assert found["T_0"] == pytest.approx((value - reach, value + reach))
 
 
+def test_a_parameter_moves_by_its_own_sigma_wherever_it_stands():
+    terms = (term_named("coulomb"), term_named("torque_offset"))
+    behind = FrictionModel("m", terms, (8.0, 2.0), np.diag([2.0**2, 5.0**2]))
+    assert seed_range(behind, 0.5) == {"C2": pytest.approx((4.0, 12.0)), "T_0": pytest.approx((-13.0, 17.0))}
+
+
 def test_a_signed_seed_without_covariance_moves_by_its_typical_size():
     bare = model(0.1, 1.0).with_covariance(None)
     assert seed_range(bare, 0.5)["T_0"] == pytest.approx((-0.9, 1.1))

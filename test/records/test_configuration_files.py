@@ -294,6 +294,15 @@ def test_how_a_number_or_a_name_is_to_be_written_is_said(written, instead, said)
         crane_from_content(parse_yaml(text.replace(written, instead, 1), "crane.yaml"), "crane.yaml")
 
 
+@pytest.mark.parametrize("written", ["[Nord, 7]", "{of: Nord}"])
+def test_a_list_or_a_section_in_a_names_place_is_not_to_be_put_in_quotes(written):
+    text = (config_directory() / "cranes" / "crane_150t.yaml").read_text()
+    text = text.replace("name: crane_150t", f"name: {written}")
+    with pytest.raises(InputError, match="name must be a string") as caught:
+        crane_from_content(parse_yaml(text, "crane.yaml"), "crane.yaml")
+    assert "quotes" not in str(caught.value)
+
+
 def test_a_number_and_an_entry_without_a_value_are_no_decimal_comma():
     text = "schema: winch_friction.crane/1\nname: x\ngear_ratio: 250\nnotes:\n"
     with pytest.raises(InputError) as caught:
@@ -382,3 +391,9 @@ def test_a_bound_is_written_where_there_is_one(bounds, written):
     entry = yaml.safe_load(model_to_text(model))["parameters"]["t_0"]
     assert entry == {"value": 2.0, "unit": "N*m"} | written
     assert model_from_text(model_to_text(model)).bounds_of("t_0") == bounds
+
+
+def test_a_file_of_another_kind_in_a_models_place_is_said_to_be_that():
+    """Not that its key 'terms' is missing: the two paths were exchanged on the command line."""
+    with pytest.raises(InputError, match="this is a crane file .*, and a model file is asked for"):
+        load_model(config_directory() / "cranes" / "crane_150t.yaml")

@@ -18,6 +18,7 @@ from winch_friction.records.emps import FORCE_GAIN, read_emps
 from winch_friction.records.input_mapping import InputMapping, bag_options_of
 from winch_friction.records.model_file import model_from_content, model_to_text
 from winch_friction.records.plain import finite
+from winch_friction.records.runs import _jumping
 from winch_friction.records.sample_stream import SIMULTANEOUS, InputHold, SampleStream
 from winch_friction.records.strict_yaml import Section, parse_yaml
 from winch_friction.records.telemetry import Telemetry, estimates, faults, inputs, state
@@ -369,3 +370,12 @@ def test_a_benchmarks_filter_halves_the_power_at_a_hundred_hertz(tmp_path):
     savemat(path, {"t": time, "qm": np.sin(2.0 * np.pi * 100.0 * time), "qg": time, "vir": time})
     speed = read_emps(path)["motor_speed"][500:-500]
     assert np.abs(speed).max() == pytest.approx(0.5 * np.sin(0.2 * np.pi) / 1e-3, rel=0.02)
+
+
+def test_a_digit_of_a_coarse_transducer_that_stands_still_is_no_jump():
+    """Most of its samples are as the one before: what it moves by, when it does, tells a jump."""
+    values = np.zeros(200)
+    values[[30, 60, 90, 120, 150]] = 1.0
+    assert not _jumping(values).any()
+    values[100] = 500.0
+    assert np.flatnonzero(_jumping(values)).tolist() == [100]

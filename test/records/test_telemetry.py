@@ -53,6 +53,23 @@ def test_a_plain_number_of_a_bridge_is_dated_by_its_receipt():
     assert points["reference"] == [[7.0, pytest.approx(-1000.0, rel=1e-4)]]
 
 
+def test_what_was_said_of_a_joint_is_over_once_the_motors_is_there():
+    telemetry = Telemetry()
+    telemetry.take("winch/joint_states", joint(0.0, name=["boom"], velocity=[1.0]))
+    assert telemetry.frame()["notes"] != []
+    telemetry.take("winch/joint_states", joint(1.0, name=["boom", "winch_motor"], velocity=[1.0, 2.0]))
+    assert telemetry.frame()["notes"] == []
+
+
+@pytest.mark.parametrize("topic", ["winch/joint_states", "compensator/friction_torque", "simulator/truth"])
+def test_a_joint_without_a_value_is_a_gap_in_its_curve(topic):
+    """Arrays of a JointState may be shorter than its names: drivers leave out what they do not know."""
+    telemetry = Telemetry()
+    telemetry.take(topic, joint(0.0, velocity=[]))
+    assert telemetry.frame()["points"].get("speed", []) == []
+    assert all(value is None for points in telemetry.frame()["points"].values() for _, value in points)
+
+
 def test_the_speed_is_the_joints_that_is_asked_for():
     """A JointState of the whole crane: the first joint was shown as the motor's speed."""
     crane = {"name": ["boom", "winch_motor", "winch_7"], "velocity": [1.0, 2.0, 3.0]}

@@ -196,6 +196,7 @@ def test_outputs_as_bag_and_table(tmp_path, bag, crane_150t, crane2_model):
     parts = (replayed.compensator, replayed.estimator, replayed.model)
     table = read_run(write_outputs(tmp_path / "o.parquet", *parts), complete=False)
     np.testing.assert_array_equal(table.aside["friction_torque"], replayed.compensator["friction_torque"])
+    assert write_outputs(tmp_path / "o.pq", *parts).read_bytes() == (tmp_path / "o.parquet").read_bytes()
     assert {"estimator.C4", "estimator.C4_std", "state"} <= set(table.aside)
     written = read_run(
         write_outputs(tmp_path / "o", *parts),

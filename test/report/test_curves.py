@@ -38,6 +38,7 @@ def test_deviations_of_independent_estimates_add_by_their_squares(pair):
 def test_the_difference_is_the_second_model_minus_the_first(pair):
     first, second = pair
     columns = pair_plot(first, second).frames[0].columns
+    assert columns[SPEED] == pytest.approx(np.array([20.0, 80.0, 150.0]) * 30.0 / np.pi)
     assert columns["difference [N·m]"] == pytest.approx(second.torque - first.torque)
     width = columns["plus 1 σ [N·m]"] - columns["difference [N·m]"]
     assert width == pytest.approx(np.hypot(first.std, second.std))

@@ -96,8 +96,9 @@ def test_what_to_look_at_is_that_of_the_trait_that_jumped(tmp_path, trait, look,
 
 
 def test_a_change_stands_with_month_signed_size_and_chance():
-    (row,) = cells(_changes({**NOTHING, "steps": [{**STEP, "size": -3.456, "p_value": 0.0123}], "notes": ["a note"]}))
-    assert row == ["north", "friction", "2026-03", "-3.46\u00a0%", "0.01"]
+    step = {**STEP, "trait": "load_proportional", "size": -3.456, "p_value": 0.0123}
+    (row,) = cells(_changes({**NOTHING, "steps": [step], "notes": ["a note"]}))
+    assert row == ["north", "load proportional", "2026-03", "-3.46\u00a0%", "0.01"]
     assert "<p>a note</p>" in _changes({**NOTHING, "notes": ["a note"]})
     assert "No sudden change." in _changes(NOTHING)
 

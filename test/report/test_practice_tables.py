@@ -144,6 +144,13 @@ def test_the_summary_says_fitted_and_held_out_tests_above_and_below_250_rpm_and_
         "sea.csv: predicted pressure within 4 bar RMS while turning.",
         "Not determined by these tests, held by the prior: nothing.",
     ]
+    # of all tests fitted and none held out nothing is said, and every direction that nothing was seen of is named
+    several = SimpleNamespace(tests=[0, 1, 2], unseen=["C1 with C3", "C4", "C5"])
+    said = summary_lines(SimpleNamespace(system=several, errors={"joint fit": errors}, ahc={"joint fit": []}))
+    assert said == [
+        "Total friction on 3 fitted tests: within 6 % of nominal torque above 250 rpm, 9 % below.",
+        "Not determined by these tests, held by the prior: C1 with C3; C4; C5.",
+    ]
 
 
 # -- loops

@@ -28,10 +28,11 @@ def test_the_inverted_lag_reaches_what_is_wanted():
     assert np.abs(np.array(reached) - wanted).max() < 1e-12
 
 
-def test_a_saturated_pump_is_remembered():
+@pytest.mark.parametrize("way", [1.0, -1.0])
+def test_a_saturated_pump_is_remembered(way):
     c, memory = settings(), np.zeros(CONTROL_STATES)
-    assert invert_lag(c, memory, 0.04, 0.0445) == 0.0445
-    assert memory[DRIVE_MODEL] < 0.04
+    assert invert_lag(c, memory, way * 0.04, 0.0445) == way * 0.0445
+    assert 0.0 < way * memory[DRIVE_MODEL] < 0.04
 
 
 def test_the_volume_of_a_friction_step_is_delivered():

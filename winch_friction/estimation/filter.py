@@ -233,7 +233,7 @@ class StateFilter:
         before = np.linalg.inv(self.parameters.prior)
         change()
         change_of_precision = np.linalg.inv(self.parameters.prior) - before
-        across = self.P[:, self._phi].copy()
+        across = self.P[:, self._phi]
         factor = change_of_precision @ np.linalg.inv(np.eye(len(before)) + self.phi_covariance @ change_of_precision)
         self._flat -= self._moved
         self._moved[:] = 0.0

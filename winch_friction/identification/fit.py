@@ -52,7 +52,7 @@ def fit(
         )
     values, cost, evaluations = _solver(method)(model, data, seed, options)
     fitted = model.with_values(values)
-    jacobian = CountedModel(fitted, data).columns(values)
+    jacobian = CountedModel(fitted, data).columns()
     errors = data.torque - CountedModel(fitted, data).torque(values)
     sizes = np.array([max(abs(value), abs(p.typical)) for value, p in zip(values, model.parameters, strict=True)])
     return FitResult(
@@ -93,7 +93,7 @@ def _by_complex(
 def search_box(model: FrictionModel, data: FitData) -> tuple[FloatArray, FloatArray]:
     """Bounds for a population: the declared ones, cut to what a term alone could need to explain the torque."""
     bounds = np.array([model.bounds_of(name) for name in model.parameter_names])
-    columns = np.abs(CountedModel(model, data).columns(model.values)).max(axis=0)
+    columns = np.abs(CountedModel(model, data).columns()).max(axis=0)
     reach = _BOX_MARGIN * np.abs(data.torque).max() / np.where(columns > 0.0, columns, np.inf)
     shape = np.array([each.shape for each in model.parameters])
     lower = np.where(shape, bounds[:, 0], np.maximum(bounds[:, 0], -reach))

@@ -40,9 +40,9 @@ class FitData:
 
     def where(self, keep: FloatArray) -> "FitData":
         """The observations of a mask (n,)."""
-        mask = np.tile(np.asarray(keep, bool), self.copies)
+        kept = np.asarray(keep, bool)
+        mask = np.tile(kept, self.copies)
         points = tuple(np.broadcast_to(column, mask.shape)[mask] for column in self.points)
-        kept = mask[: len(self)]
         columns = {name: np.asarray(getattr(self, name))[kept] for name in ("torque", "weight", "group", "cluster")}
         return replace(self, points=points, **columns)
 
@@ -77,11 +77,10 @@ class CountedModel:
         error = self.data.torque - self.torque(values)
         return float(self.data.weight @ (error * error))
 
-    def columns(self, values: Sequence[float]) -> FloatArray:
-        """Partial derivatives by every parameter (n, parameters), N m per motor and unit."""
-        model = self.model.with_values(values)
-        self.evaluations += len(model.values)
-        return self.data.per_observation(model.jacobian(self.data.points))
+    def columns(self) -> FloatArray:
+        """Partial derivatives by every parameter at the model's own (n, parameters), N m per motor and unit."""
+        self.evaluations += len(self.model.values)
+        return self.data.per_observation(self.model.jacobian(self.data.points))
 
 
 def _groups(points: tuple[Any, ...]) -> int:

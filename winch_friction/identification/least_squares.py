@@ -123,7 +123,7 @@ def _columns(model: FrictionModel | None, data: FitData) -> tuple[dict[str, Floa
     if model is None:
         return {}, 0
     counted = CountedModel(model, data)
-    jacobian = counted.columns(model.values)
+    jacobian = counted.columns()
     names = [each.name for each in model.parameters if not each.shape]
     # a shape parameter's own column is not used here, and not counted
     return {name: jacobian[:, model.parameter_names.index(name)] for name in names}, counted.evaluations - sum(

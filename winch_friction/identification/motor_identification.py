@@ -85,7 +85,7 @@ def identify_motor(
 def _refuse_undetermined(chosen: ModelScore, table: SupplierTable) -> None:
     """Raise `InputError` where other values of some parameters fit as well: their deviations would say nothing."""
     model = chosen.fitted.model
-    tied = exchangeable(CountedModel(model, table.fit_data()).columns(model.values), model.parameter_names)
+    tied = exchangeable(CountedModel(model, table.fit_data()).columns(), model.parameter_names)
     if not tied:
         return
     many = {name: len(np.unique(getattr(table, name).round(12))) for name in ("speed", "pressure", "displacement")}

@@ -397,3 +397,18 @@ def test_a_file_of_another_kind_in_a_models_place_is_said_to_be_that():
     """Not that its key 'terms' is missing: the two paths were exchanged on the command line."""
     with pytest.raises(InputError, match="this is a crane file .*, and a model file is asked for"):
         load_model(config_directory() / "cranes" / "crane_150t.yaml")
+
+
+def test_a_text_that_is_read_again_is_parsed_once_and_given_anew(monkeypatch):
+    """The check reads every shipped crane for each log; what one reader changes is not what the next one gets."""
+    text = "crane: {groups: [1, 2]}\n# read again\n"
+    first = parse_yaml(text, "a.yaml")
+    first["crane"]["groups"].append(3)
+    monkeypatch.setattr(strict_yaml, "_Loader", None)
+    assert parse_yaml(text, "a.yaml") == {"crane": {"groups": [1, 2]}}
+
+
+def test_a_refusal_names_the_file_that_is_read_now():
+    for name in ("a.yaml", "b.yaml", "a.yaml"):
+        with pytest.raises(InputError, match=f"{name} line 2: key 'k' stands on line 1 already"):
+            parse_yaml("k: 1\nk: 2\n", name)

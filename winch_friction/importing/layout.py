@@ -53,11 +53,13 @@ class Layout:
 def find_layout(rows: Sequence[Row], decimal: str, thousands: str = "") -> Layout | None:
     """The layout of a table, or None when no run of rows with values is found."""
     seen = rows[:_SEEN]
-    widths = Counter(_width(row) for row in seen if _share_of_values(row, decimal, thousands) >= 0.4)
+    valued = [_share_of_values(row, decimal, thousands) >= 0.4 for row in seen]
+    width_of = [_width(row) for row in seen]
+    widths = Counter(w for w, has_values in zip(width_of, valued, strict=True) if has_values)
     if not widths:
         return None
     width = max(widths, key=lambda w: (widths[w], w))
-    good = [_share_of_values(row, decimal, thousands) >= 0.4 and abs(_width(row) - width) <= 1 for row in seen]
+    good = [has_values and abs(w - width) <= 1 for w, has_values in zip(width_of, valued, strict=True)]
     # a logger that writes changes leaves the other cells empty
     alike = sum(widths[w] for w in (width - 1, width, width + 1)) >= _ALIKE * sum(widths.values())
     alone = sum(_is_time_alone(row, decimal, thousands) for row in seen)

@@ -3,11 +3,13 @@ refused in one line that says where.
 """
 
 import contextlib
+import copy
 import itertools
 import math
 import re
 import sys
 from collections.abc import Mapping
+from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -193,9 +195,19 @@ for _kind in ("int", "float"):
     )
 
 
+# characters of a text whose content is kept: ten times those of the longest shipped file
+_KEPT = 100_000
+
+
 def parse_yaml(text: str, where: str) -> Any:
     """The content of a YAML text; a key that stands twice in one mapping is refused, and so is a number such as 014,
     which is 12 to YAML."""
+    if len(text) > _KEPT:
+        return _parsed(text, where)
+    return copy.deepcopy(_parsed_once(text, where))  # a hundredth of the time; whoever asked may change it
+
+
+def _parsed(text: str, where: str) -> Any:
     try:
         loader = _Loader(text)
         node = loader.get_single_node()
@@ -221,6 +233,9 @@ def parse_yaml(text: str, where: str) -> Any:
     if said:
         raise InputError(*(f"{where} line {line}: {text}" for line, text in said))
     return content
+
+
+_parsed_once = lru_cache(maxsize=64)(_parsed)  # the check reads each shipped crane and model, for each log anew
 
 
 def _unfolded(node: Any, sizes: dict[int, float]) -> float:

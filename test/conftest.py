@@ -31,6 +31,7 @@ def pytest_collection_finish():
     gc.collect()
     gc.freeze()
     gc.enable()
+    gc.set_threshold(50_000, 20, 20)  # after 700 objects, as Python has it, it is a fortieth of the tests' time
 
 
 @pytest.fixture(scope="session")

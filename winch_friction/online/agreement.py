@@ -1,5 +1,4 @@
-"""What is believed: a stamp that advances, a sender with one voice, a drive that can be a winch's, a command and a
-speed that fit each other; the load and the drive's torque are in `doubt`."""
+"""What is believed: a stamp, a sender of one voice, a drive, a command beside a speed; loads are in `doubt`."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -30,6 +29,7 @@ class Stamp(Enum):
 
     GOOD = "good"
     REPEATED = "stamp stands still"
+    LATE = "stamp before that of the last message"
     AHEAD = "stamp ahead of the clock"
     BACK = "stamp far behind"
     JUMP = "the clock was set"
@@ -60,7 +60,7 @@ class StampWatch:
             return self._doubt(stamp, now, Stamp.AHEAD)
         slowest = SLOWEST * min(max(passed, 0.0), LONGEST_CATCH_UP) if self.paced else 0.0
         if gained <= 0.0 or gained < slowest:
-            return Stamp.REPEATED
+            return Stamp.LATE if gained < 0.0 else Stamp.REPEATED
         return self._believe(stamp, now, Stamp.GOOD)
 
     def forget(self) -> None:

@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from functools import partial
+from functools import partial, reduce
 
 import numpy as np
 
@@ -263,8 +263,9 @@ def _concluded(model: FrictionModel, given: FrictionModel, verdict: str) -> Fric
 
 def _notes(runs: Sequence[Run], loads: Mapping[str, float]) -> tuple[str, ...]:
     notes = [f"{name}: no hook_load; {load / 1e3:.1f} t estimated from the balance" for name, load in loads.items()]
-    bare = [run.name for run in runs if "wire_layer" not in run and run.groups]
-    return (*notes, *([f"no wire_layer in {len(bare)} runs: the outer layer is assumed"] if bare else []))
+    bare = {reduce(str.removesuffix, adequacy.PARTS, r.name) for r in runs if "wire_layer" not in r and r.groups}
+    said = f"no wire_layer in {len(bare)} run{'s' * (len(bare) > 1)}: the outer layer is assumed"
+    return (*notes, *([said] if bare else []))
 
 
 def _amounts(model: FrictionModel, runs: Sequence[Run]) -> list[str]:

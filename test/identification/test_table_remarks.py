@@ -49,7 +49,9 @@ def test_a_speed_in_turns_per_second_ends_at_parameters_that_no_motor_has():
 def test_a_model_that_no_motor_has_is_not_taken_for_a_seed(times):
     """At the speed that the motor truly turns at, its K2 alone lost twice the motor's torque; a warning was all."""
     wrong = replace(table(), speed=table().speed * times)
-    with pytest.raises(InputError, match=r"^a6vm215_generated.csv: K1, K2 of 'mj4' end at .*--force takes the fit"):
+    with pytest.raises(
+        InputError, match=r"^a6vm215_generated.csv: K1, K2 of 'mj4' end at .*; identify --force takes the fit"
+    ):
         identify_motor(wrong, ["mj4"], with_complex=False)
     forced = identify_motor(wrong, ["mj4"], with_complex=False, force=True)
     assert "K1, K2" in motor_seed(forced, "forced", {}).provenance["forced"]

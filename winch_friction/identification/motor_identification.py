@@ -74,7 +74,7 @@ def identify_motor(
     best = next(each for each in scores if each.name == wanted)
     _refuse_undetermined(best, inside)
     if (beyond := at_largest(best)) and not force:
-        raise InputError(f"{table.name}: {beyond}? Correct it there; --force takes the fit all the same")
+        raise InputError(f"{table.name}: {beyond}? Correct it there; identify --force takes the fit all the same")
     return MotorIdentification(
         table=inside,
         weighting=weighting,

@@ -142,3 +142,13 @@ def test_all_logs_that_cannot_be_read_are_told_at_once_and_none_is_written(impor
 @pytest.mark.parametrize(("options", "asked"), [({}, 1), ({"accept": True}, 0), ({"force": True}, 0)])
 def test_open_questions_are_asked_unless_they_are_accepted(options, asked, importing):
     assert len(importing("ab.csv", **options)["open"]) == asked
+
+
+@pytest.mark.parametrize("suffix", [".csv", ".parquet"])
+def test_a_folder_is_not_made_under_the_name_of_a_run_file(suffix, tmp_path):
+    """`simulate --out run.csv` is a file: `import --out run.csv` made a folder of that name, which `replay` refused,
+    and `--out run.parquet` one with a CSV file in it."""
+    with pytest.raises(InputError, match=f"this verb writes a folder of files; give a name without {suffix}"):
+        import_.import_logs(
+            [Path("a.csv")], Path("m"), "", tmp_path / f"run{suffix}", "csv", [], False, False, False, False
+        )

@@ -7,13 +7,13 @@ import numpy as np
 import pytest
 
 from winch_friction.cli.gap_output import _found_as, _parameters, show_result
-from winch_friction.discrepancy.adequacy import Check, of_names
+from winch_friction.discrepancy.adequacy import Check, _divided, of_names
 from winch_friction.discrepancy.answer import Side
 from winch_friction.discrepancy.engine.blocks import Slot
 from winch_friction.discrepancy.engine.chance import Size
 from winch_friction.discrepancy.engine.selection import TAKEN, Considered, Finding, Selection
 from winch_friction.discrepancy.next_experiment import nothing_compared
-from winch_friction.discrepancy.workflow import _in_the_end, _inexact, _times
+from winch_friction.discrepancy.workflow import _in_the_end, _inexact, _notes, _times
 from winch_friction.physics.friction import FrictionModel, term_named
 from winch_friction.physics.friction.correction import Correction
 from winch_friction.physics.signals import Run
@@ -101,3 +101,11 @@ def test_what_runs_lack_is_said_once_and_names_are_not_counted(tmp_path, capsys)
     assert shown[2] == "lacking: moving samples: 12 s, needed 15 s"
     told = facts(SimpleNamespace(holdout=nothing_compared(), unit="bar", adequacy=checks))
     assert told == [(checks[0].what, "none of these"), ("moving samples", "12 s, needed 15 s")]
+
+
+def test_runs_without_a_layer_are_counted_as_they_were_given():
+    """Of one log that was looked at as three runs it was said of six: each was divided for the proof."""
+    groups = ("pressure_a", "pressure_b", "displacement")
+    runs = [replace(run, columns=run.columns | {f"main.{each}": np.ones(11) for each in groups}) for run in RUNS]
+    for given, said in ((runs, "3 runs"), (runs[:1], "1 run")):
+        assert _notes(_divided(given, 0.5).runs, {}) == (f"no wire_layer in {said}: the outer layer is assumed",)

@@ -65,7 +65,7 @@ BAD = {
     "underscore": ([HEADER, "1_000,200,215,94"], r"row 2: column 'speed' holds '1_000', not a finite number"),
     "decimal comma": ([HEADER.replace(",", ";"), "1000;200;215;94,5"],
                       r"row 2: column 'efficiency' holds '94,5', not a finite number; write it with a point"),
-    "empty cell": ([HEADER, "1000,,215,94"], r"row 2: column 'pressure' holds nothing"),
+    "empty cell": ([HEADER, "1000,,215,94"], r"row 2: column 'pressure' is empty; give a number"),
     "cells": ([HEADER, "1000,200,215"], r"row 2: 3 cells, the header has 4 columns"),
     "negative": ([HEADER, "-1000,200,215,94"], r"row 2: column 'speed' = -1000 must be above 0"),
     "a speed that no motor has": ([HEADER, "1e300,200,215,94"],

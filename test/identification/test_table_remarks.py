@@ -6,11 +6,12 @@ from functools import cache
 import numpy as np
 import pytest
 
-from winch_friction.identification.motor_identification import identify_motor
+from winch_friction.identification.motor_identification import identify_motor, motor_seed
 from winch_friction.identification.supplier_file import read_supplier_table
 from winch_friction.identification.supplier_table import FitRange
 from winch_friction.identification.table_remarks import remarks_on
 from winch_friction.physics.channels import BAR
+from winch_friction.physics.errors import InputError
 from winch_friction.records.strict_yaml import shipped
 
 TABLES = ("a6vm170", "a6vm215")
@@ -22,7 +23,7 @@ def table(name="a6vm215"):
 
 
 def said(read):
-    return remarks_on(identify_motor(read, ["mj4"], with_complex=False))
+    return remarks_on(identify_motor(read, ["mj4"], with_complex=False, force=True))
 
 
 @pytest.mark.parametrize("name", TABLES)
@@ -42,6 +43,19 @@ def test_a_digit_in_the_wrong_place_is_named_by_its_operating_point():
 def test_a_speed_in_turns_per_second_ends_at_parameters_that_no_motor_has():
     (remark,) = said(replace(table(), speed=table().speed / 60.0))
     assert remark.startswith("a6vm215_generated.csv: K1, K2 of 'mj4' end at the largest value that any motor has")
+
+
+@pytest.mark.parametrize("times", [2.0 * np.pi / 60.0, 1.0 / 60.0], ids=["rad/s under rpm", "turns a second under rpm"])
+def test_a_model_that_no_motor_has_is_not_taken_for_a_seed(times):
+    """At the speed that the motor truly turns at, its K2 alone lost twice the motor's torque; a warning was all."""
+    wrong = replace(table(), speed=table().speed * times)
+    with pytest.raises(
+        InputError, match=r"^a6vm215_generated.csv: K1, K2 of 'mj4' end at .*; identify --force takes the fit"
+    ):
+        identify_motor(wrong, ["mj4"], with_complex=False)
+    forced = identify_motor(wrong, ["mj4"], with_complex=False, force=True)
+    assert "K1, K2" in motor_seed(forced, "forced", {}).provenance["forced"]
+    assert "forced" not in motor_seed(identify_motor(table(), ["mj4"], with_complex=False), "good", {}).provenance
 
 
 def test_displacements_beyond_the_stated_largest_are_another_motors():

@@ -163,6 +163,45 @@ def test_another_load_begins_anew():
     assert math.isnan(balance.change)
 
 
+# -- wrong from the beginning
+PER_RADIAN = 1.0 / (2.0 * math.pi)  # a displacement in cm3/rad that is read as cm3/rev
+SEED_FRICTION = 300.0  # N m, of `sailed` at its typical speed
+
+
+def said_from_the_beginning(samples: Iterator[Sample], expected: float = SEED_FRICTION) -> str:
+    balance = InertiaBalance(CRANE, lambda _sample, _speed: expected)
+    return [balance.contradiction(each) for each in samples if each.time < FIRST + 20.0][-1]
+
+
+@pytest.mark.parametrize("times", [PER_RADIAN, 2.0 * math.pi], ids=["per radian", "per turn"])
+def test_a_displacement_in_another_unit_from_the_beginning_is_no_gain(times):
+    """Its friction was learned as far as the seed's range lets it, and the compensator took that over."""
+    assert "displacement or pressures in another unit" in said_from_the_beginning(sailed(same, lambda _: times))
+
+
+def test_friction_or_inertia_alone_that_nobody_expects_is_a_winch_and_no_unit():
+    third = lambda _time: 1.0 / 3.0
+    assert not said_from_the_beginning(sailed(third, same))
+    assert not said_from_the_beginning(sailed(same, same, inertia=third))
+    assert not said_from_the_beginning(sailed(same, lambda _: PER_RADIAN), expected=0.0)  # a seed without friction
+    assert not said_from_the_beginning(sailed(same, lambda _: 0.6))  # a spread, whatever is to blame
+
+
+def test_what_was_learned_with_a_unit_that_is_none_is_taken_back_to_the_beginning():
+    """It had stood in the checkpoint and in the model that the compensator takes over."""
+    service, right_from = EstimatorService(CRANE, SEED, TOPICS), FIRST + 30.0
+    began = service.law.model().values
+    for sample in sailed(same, lambda time: PER_RADIAN if time < right_from else 1.0):
+        if sample.time >= right_from and "another unit" in service.contradiction:
+            assert service.law.model().values == pytest.approx(began, rel=1e-12)
+            assert service.model_due(sample.time).values == SEED.values
+            assert {each.status for each in service.parameters()} <= {"invalid", "seed"}
+            break
+        service.take_row(sample)
+    else:
+        pytest.fail("nothing was said")
+
+
 # -- an electric drive
 ELECTRIC = replace(
     CRANE, drive=Drive("electric"), groups={}, inertia=0.4, gear_ratio=40.0, drum=Drum((0.25,)), rated_load=5e3,

@@ -42,7 +42,7 @@ RANGES = ChannelRanges(CRANE, TOPICS.groups)
 @pytest.mark.parametrize(
     ("gained", "passed", "worth"),
     [
-        (-1.0, 1.0, Stamp.REPEATED),
+        (-1.0, 1.0, Stamp.LATE),
         (-1.001, 1.0, Stamp.BACK),
         (0.0, 0.0, Stamp.REPEATED),
         (1.5, 1.0, Stamp.GOOD),  # half a second ahead of the clock
@@ -582,7 +582,7 @@ def gained(inertia, coulomb, viscous, *, speed=200.0, own=4.0, left=1.0, known=6
     balance._products = np.column_stack([matrix, matrix @ found])
     balance._squares = float(found @ matrix @ found) + 50.0 * left
     balance._known = known
-    return balance, balance._look()
+    return balance, balance._look(row(0.0))
 
 
 @pytest.mark.parametrize(

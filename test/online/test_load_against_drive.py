@@ -8,6 +8,7 @@ from sea import CRANE, SEED, TOPICS
 
 from winch_friction.online.agreement import Agreement
 from winch_friction.online.compensator import CompensatorService
+from winch_friction.online.load_against_drive import LEAST_KNOWN
 from winch_friction.physics.channels import GRAVITY
 from winch_friction.physics.signals import GroupSample, Sample
 from winch_friction.physics.winch.crane import Drive
@@ -53,6 +54,63 @@ def test_a_load_cell_that_is_off_by_less_than_a_dead_one_is_doubted_after_two_wa
     found = said(25.0, load=load * TONNE, shown=shown * TONNE, friction=300.0)
     assert not any(found[: round(5.0 / PERIOD)])
     assert found[-1] == "hook_load contradicts the drive torque, hoisting and lowering"
+
+
+# -- from one sample to the next
+AT = 60.0  # s
+
+
+def said_after(change, wave: float = 8.0, at: float = AT) -> float:
+    """s after `at` s until something is said of 55 t, with friction of 300 N m; NaN for nothing."""
+    agreement = Agreement(CRANE, ChannelRanges(CRANE, TOPICS.groups))
+    for k in range(round((at + 60.0) / PERIOD)):
+        time = k * PERIOD
+        sample = at_work(time, 55e3, friction=300.0, wave=wave)
+        if agreement.contradictions(change(sample) if time >= at else sample, time):
+            return time - at
+    return NAN
+
+
+def shows(times: float):
+    return lambda sample: replace(sample, hook_load=times * sample.hook_load)
+
+
+@pytest.mark.parametrize("change", [shows(2.0), shows(2.2046), shows(0.45)], ids=["double", "pounds", "less than half"])
+@pytest.mark.parametrize("wave", [4.0, 8.0, 12.0])
+def test_a_load_cell_that_jumps_is_doubted_as_soon_as_at_the_beginning(change, wave):
+    """What was before stood in the means: double was obeyed for 35 s, 7 % more than the friction that there was."""
+    assert said_after(change, wave, AT + 0.2 * wave) < 2.0 * LEAST_KNOWN + wave + 1.0
+
+
+def test_a_load_cell_that_jumps_at_a_reversal_is_doubted_as_soon():
+    assert said_after(shows(2.0), 8.0, AT - 0.001) < 2.0 * LEAST_KNOWN + 9.0  # between hoisting and lowering
+
+
+def test_a_drive_that_jumps_is_doubted_as_soon():
+    def double(sample: Sample) -> Sample:
+        passive = sample.groups["passive"]
+        wrong = GroupSample(passive.pressure_a, passive.pressure_b, 2.0 * passive.displacement)
+        return replace(sample, groups={**sample.groups, "passive": wrong})
+
+    assert said_after(double, at=AT + 1.6) < 2.0 * LEAST_KNOWN + 9.0
+
+
+@pytest.mark.parametrize("load", [15e3, 30e3, 110e3])
+def test_a_load_that_is_picked_up_or_set_down_is_none_that_jumps(load):
+    """The drive's torque follows the cell, or the cell the drive's torque by as much as a second."""
+    for late in (0.0, 1.0, -1.0):
+        agreement, found = Agreement(CRANE, ChannelRanges(CRANE, TOPICS.groups)), set()
+        for k in range(round(100.0 / PERIOD)):
+            time = k * PERIOD
+            sample = at_work(time, load if time >= AT + late else 55e3, friction=300.0, wave=8.0)
+            shown = load if time >= AT else 55e3
+            found.update(agreement.contradictions(replace(sample, hook_load=shown), time))
+        assert not found
+
+
+def test_spikes_do_not_keep_a_cell_from_being_doubted():
+    spiky = lambda sample: replace(sample, hook_load=(30e3 if round(sample.time / PERIOD) % 25 == 0 else 121e3))
+    assert said_after(spiky) < 40.0
 
 
 def test_what_shows_the_load_is_named():

@@ -1,7 +1,7 @@
 """What is said of an input names what is wrong with it, and nothing else."""
 
 import pytest
-from sea import PERIOD, SEED, Fed
+from sea import PERIOD, SEED, TOPICS, Fed, swell
 
 from winch_friction.online.estimator import EstimatorService
 from winch_friction.physics.signals import Sample
@@ -46,6 +46,17 @@ def test_a_torque_beyond_any_motor_is_told_where_the_drive_is_known_by_it(crane:
     speed = service.inputs.arrivals[SPEED]
     assert (speed.refused, "motor_torque: 1e+09 N*m is outside" in speed.reason) == ((5, True) if said else (0, False))
     assert service.last is not None  # the speed itself is taken
+
+
+def test_speeds_that_come_in_the_wrong_order_are_told_from_a_clock_that_stands(fed: Fed) -> None:
+    """Swapped in pairs on the way, half of them were said to have a stamp that stands still: one looks at the sender's
+    clock then, and not at the network."""
+    for k in range(10):
+        for place in (k + 1, k) if k % 2 == 0 else ():
+            message = dict(fed.messages(swell(fed.now + place * PERIOD)))[SPEED]
+            at = fed.now + (k + 2) * PERIOD
+            fed.service.take(TOPICS.inputs[SPEED], message, at, at)
+    assert fed.service.inputs.arrivals[SPEED].reasons == {"stamp before that of the last message": 5}
 
 
 def test_a_stamp_that_fell_back_is_told_from_a_message_that_shows_nothing(fed: Fed) -> None:

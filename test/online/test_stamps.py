@@ -77,7 +77,7 @@ def test_which_message_sets_the_clock_does_not_hang_on_how_late_it_came(rate, sh
 
 def test_late_by_less_than_a_jump_is_late():
     watch, stamp, now = watch_at_work()
-    assert watch.judge(stamp - 0.5, now + PERIOD) is Stamp.REPEATED
+    assert watch.judge(stamp - 0.5, now + PERIOD) is Stamp.LATE
 
 
 def test_a_stray_stamp_before_the_first_speed_locks_no_input_out():

@@ -36,7 +36,7 @@ def test_the_first_three_cells_that_are_no_numbers_are_told_and_how_many_more(ta
     with pytest.raises(InputError) as refused:
         table.column("p", "Pa")
     assert [each.partition("sheet.csv ")[2] for each in refused.value.problems] == [
-        "row 6: column 'p' holds nothing, not a finite number",
+        "row 6: column 'p' is empty; give a number, or leave the row out",
         "row 7: column 'p' holds 'x', not a finite number",
         "row 8: column 'p' holds 'nan', not a finite number (and 1 more like it in this column)",
     ]

@@ -106,3 +106,15 @@ def test_values_that_no_sensor_gives_do_not_overflow(tmp_path):
     speed = np.where(np.arange(200) == 100, 1e308, np.sin(np.arange(200)))
     assert _turning(speed).shape == speed.shape
     assert _turning(np.array([1e308, -1e308, -1.0, -1.0])).any()
+
+
+def test_a_disk_that_may_only_be_read_says_what_to_do(tmp_path, monkeypatch):
+    """Of a full one it was said; an estimator's checkpoint on a read-only disk was just `Read-only file system`."""
+
+    def refused(*_, **__):
+        raise OSError(errno.EROFS, os.strerror(errno.EROFS))
+
+    monkeypatch.setattr(atomic.Path, "touch", refused)
+    with pytest.raises(OSError, match="cannot be written") as caught:
+        write_text(tmp_path / "kept.yaml", "x")
+    assert caught.value.strerror == "cannot be written (Read-only file system); give another place"

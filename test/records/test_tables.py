@@ -133,6 +133,7 @@ def changed(line, old, new):
         (changed(1, "[t]", "[kN]"), "unit 'kN'"),
         (changed(1, "motor_speed [rpm]", "speed"), "'motor_speed' (or 'drum_speed') is missing"),
         (changed(1, "time [ms]", "t"), "column 'time' is missing"),
+        ("Zeit;Drehzahl\n1;2\n2;2\n", "is missing; found no known column; a log with names of its own becomes a run"),
         (changed(1, "hook_load [t]", "motor_speed"), "column 'motor_speed' stands twice"),
         (changed(1, "main.displacement [cm^3/rev]", "displacement"), "group 'main' lacks main.displacement"),
         (changed(3, ",55,", ",55,55,"), "line 3: 8 values for 7 columns"),

@@ -16,7 +16,9 @@ app = typer.Typer(
 
 PRACTICE = "Friction practice: "  # begins the title of its page
 Json = Annotated[bool, typer.Option("--json", help="Results as JSON on stdout.")]
-Force = Annotated[bool, typer.Option(help="Go on with data that contradict the crane; the result says so.")]
+Force = Annotated[
+    bool, typer.Option(help="Go on with data that contradict the crane, or any motor; the result says so.")
+]
 Seed = Annotated[int, typer.Option(min=0, help="Seed of the complex method and of the bootstrap.")]
 Restarts = Annotated[int, typer.Option(min=1, help="Restarts of the complex method.")]
 Evaluations = Annotated[int, typer.Option(min=100, help="Most evaluations of the complex method per restart.")]
@@ -63,6 +65,7 @@ def motor(
     restarts: Restarts = 3,
     evaluations: Evaluations = 20000,
     seed: Seed = 0,
+    force: Force = False,
     overwrite: Overwrite = False,
     json: Json = False,
 ) -> None:
@@ -111,6 +114,7 @@ def motor(
         seed=seed,
         progress=progress,
         complex_options={"restarts": restarts, "max_evaluations": evaluations},
+        force=force,
     )
     fitted = motor_seed(found, out.stem, {"data_sha256": {path.name: _hash(path)}})
     save_model(fitted, out)
@@ -271,6 +275,7 @@ def practice(
         seed=seed,
         progress=progress,
         complex_options={"restarts": restarts, "max_evaluations": evaluations},
+        force=force,
     )
     show_warnings(filter(None, [FitRange.usual(folder.table).left_out(folder.table), *remarks_on(done.motor)]))
     files = sorted(each for each in _example(example).iterdir() if each.is_file())

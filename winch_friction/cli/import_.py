@@ -130,13 +130,14 @@ def import_logs(
     overwrite: bool, as_json: bool,
 ) -> None:  # fmt: skip
     """Write one run file per log, all or none."""
-    from winch_friction.cli.inputs import refuse_unwritable
+    from winch_friction.cli.inputs import refuse_foreign, refuse_unwritable
     from winch_friction.importing.carry_out import import_log
     from winch_friction.importing.contradiction import run_contradictions
     from winch_friction.importing.mapping import load_map, refuse_if_open, with_settings
     from winch_friction.records.crane_file import load_crane
     from winch_friction.records.runs import write_run
 
+    refuse_foreign(out, (), "")  # `simulate --out run.csv` is a file; a folder of that name surprised
     log_map = with_settings(load_map(map_file), settings)
     if not (accept or force):
         refuse_if_open(log_map, str(map_file))

@@ -266,7 +266,7 @@ def refuse_foreign(out: Path | None, names: Sequence[str], mark: str, schema: st
     An earlier call has left `mark`, which says `schema`; the names may be patterns. Without `overwrite` an earlier
     result is refused as well. So is a folder that is to be made under the name of a file.
     """
-    if out is not None and not out.exists() and out.suffix.lower() in (*PAGE, *MODEL[:2], ".json", ".csv"):
+    if out is not None and not out.exists() and out.suffix.lower() in (*PAGE, *MODEL[:2], ".json", ".csv", ".parquet"):
         raise InputError(f"--out {out}: this verb writes a folder of files; give a name without {out.suffix}")
     if out is None or not out.is_dir():
         return

@@ -1,6 +1,6 @@
 """The whole commissioning check: quick part, every channel, what the runs can teach, what to log next."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from typing import Any
 
@@ -17,6 +17,7 @@ from winch_friction.physics.errors import counted
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.signals import Run
 from winch_friction.physics.winch.crane import Crane
+from winch_friction.physics.winch.layers import WORTH_SAYING, layer_changes, lost_to_layers
 from winch_friction.records.runs import apart, scattered, without_broken
 
 SCHEMA = "winch_friction.check/1"
@@ -117,6 +118,7 @@ def check(
             if finding.cause != "stuck" or (finding.runs, finding.channel) not in told
         ),
     ]
+    per_channel += [each for run in runs for each in _of_changing_layers(run, crane)]
     per_channel += [Finding("note", "gaps", said, "time") for said in holes]
     per_channel += [Finding("warning", "copy", said, "time") for said in same_recordings(runs)]
     # a stable sort: the diagnosis stays first among what is equally grave
@@ -155,3 +157,11 @@ def _plain(value: Any) -> Any:
     if isinstance(value, dict):
         return _finite(value)
     return [_plain(each) for each in value] if isinstance(value, (list, tuple)) else value
+
+
+def _of_changing_layers(run: Run, crane: Crane) -> Iterator[Finding]:
+    """A `wire_layer` around whose changes `gap` uses nothing; one that flips took whole runs away without a word."""
+    if (said := lost_to_layers(run, crane)) and (found := layer_changes(run, crane)).near >= WORTH_SAYING:
+        severity = "warning" if found.changes > found.most else "note"
+        evidence = {"changes": found.changes, "share": found.near}
+        yield Finding(severity, "layer_changes", said, "wire_layer", (run.name,), evidence)

@@ -21,6 +21,7 @@ TELLING = "runs that tell more effects apart"
 HEAVE = "runs of heave compensation that log heave_velocity, without which the crane is taken to stand still"
 MOVED = 0.5  # of a gap's variance, left where the load is taken to hang still: then the crane has moved
 IN_TIME = 0.98  # of the rate that is asked for: clocks drift, and the first and last periods are cut
+PARTS = " (first part)", " (last part)"  # after the name of a run that is divided: of few none is locked whole
 DISTINCT = 0.1  # relative difference from which on two loads or displacements are two
 
 
@@ -290,10 +291,10 @@ def _divided(runs: Sequence[Run], fraction: float) -> Split:
     parts, train, locked = [], [], []
     for run in runs:
         time, border = run.time - run.time[0], (run.time[-1] - run.time[0]) * (1.0 - fraction)
-        for label, keep in (("first part", time < border - LIMITS.guard_time), ("last part", time >= border)):
+        for label, keep in zip(PARTS, (time < border - LIMITS.guard_time, time >= border), strict=True):
             own = stretch(np.flatnonzero(keep))  # no copy: of a million rows a tenth of the peak
             columns = {name: values[own] for name, values in run.columns.items()}
-            parts.append(Run(f"{run.name} ({label})", columns, {}, run.warnings, run.metadata))
+            parts.append(Run(f"{run.name}{label}", columns, {}, run.warnings, run.metadata))
         train.append(parts[-2].name)
         locked.append(parts[-1].name)
     return Split(tuple(parts), tuple(train), tuple(locked))

@@ -2,12 +2,11 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from functools import partial
+from functools import partial, reduce
 
 import numpy as np
 
 from winch_friction.discrepancy import adequacy, again
-from winch_friction.discrepancy.adequacy import lock_holdout, refuse
 from winch_friction.discrepancy.answer import (
     AMBIGUOUS,
     MISSING,
@@ -33,7 +32,7 @@ from winch_friction.discrepancy.next_experiment import (
     plan_experiment,
     with_what_was_seen,
 )
-from winch_friction.discrepancy.preparation.grid import thinned
+from winch_friction.discrepancy.preparation.grid import beside_climbs, thinned
 from winch_friction.discrepancy.preparation.own_simulation import SIMULATED, against_simulations
 from winch_friction.discrepancy.proof import Trial, at_the_floor, drift_note, far_off, nobodys
 from winch_friction.discrepancy.proposals import Proposal, explained, propose
@@ -61,7 +60,7 @@ def find_gap(runs: Sequence[Run], crane: Crane, model: FrictionModel, options: G
     all.
     """
     options, model = options or GapOptions(), completed(model, crane)
-    refuse(runs, options.holdout, options.seed)
+    adequacy.refuse(runs, options.holdout, options.seed)
     # by name: which runs are locked must not hang on the order in which they are given
     parts, holes = apart(sorted(runs, key=lambda run: run.name))
     parts, found = without_broken(parts)
@@ -69,11 +68,12 @@ def find_gap(runs: Sequence[Run], crane: Crane, model: FrictionModel, options: G
     if any(name.endswith(SIMULATED) for run in every for name in run.columns):
         every = against_simulations(every, model, crane)
     runs, notes = adequacy.long_enough(every)
-    notes = [*holes, *(f"{each.sentence}; left out" for each in found), *notes]
+    runs, climbing = beside_climbs(runs, crane)
+    notes = [*holes, *(f"{each.sentence}; left out" for each in found), *notes, *climbing]
     checks = adequacy.of_records(every, runs)
     if not all(check.met for check in checks):
         return insufficient(checks, notes, crane, model)
-    split = lock_holdout(runs, options.holdout, np.random.default_rng(options.seed))
+    split = adequacy.lock_holdout(runs, options.holdout, np.random.default_rng(options.seed))
     study = Study(split, crane, options, np.random.default_rng(options.seed + 1))
     options.told("closing the balance")
     given = meet(split.runs, crane, model)
@@ -263,8 +263,9 @@ def _concluded(model: FrictionModel, given: FrictionModel, verdict: str) -> Fric
 
 def _notes(runs: Sequence[Run], loads: Mapping[str, float]) -> tuple[str, ...]:
     notes = [f"{name}: no hook_load; {load / 1e3:.1f} t estimated from the balance" for name, load in loads.items()]
-    bare = [run.name for run in runs if "wire_layer" not in run and run.groups]
-    return (*notes, *([f"no wire_layer in {len(bare)} runs: the outer layer is assumed"] if bare else []))
+    bare = {reduce(str.removesuffix, adequacy.PARTS, r.name) for r in runs if "wire_layer" not in r and r.groups}
+    said = f"no wire_layer in {len(bare)} run{'s' * (len(bare) > 1)}: the outer layer is assumed"
+    return (*notes, *([said] if bare else []))
 
 
 def _amounts(model: FrictionModel, runs: Sequence[Run]) -> list[str]:

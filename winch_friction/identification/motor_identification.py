@@ -53,11 +53,12 @@ def identify_motor(
     seed: int = 0,
     progress: Progress = silent,
     complex_options: Mapping[str, int] | None = None,
+    force: bool = False,
 ) -> MotorIdentification:
     """Fit every model both ways and score it.
 
     `chosen` overrides the recommended model; `fit_range`: which rows count, `FitRange.usual` of the table without it;
-    `complex_options`: restarts, max_evaluations.
+    `complex_options`: restarts, max_evaluations; `force`: take a fit that ends where no motor is. Raises `InputError`.
     """
     names = list(dict.fromkeys(motor_model_named(name).name for name in models))
     if chosen and motor_model_named(chosen).name not in names:
@@ -72,6 +73,8 @@ def identify_motor(
     wanted = motor_model_named(chosen).name if chosen else recommended.name
     best = next(each for each in scores if each.name == wanted)
     _refuse_undetermined(best, inside)
+    if (beyond := at_largest(best)) and not force:
+        raise InputError(f"{table.name}: {beyond}? Correct it there; identify --force takes the fit all the same")
     return MotorIdentification(
         table=inside,
         weighting=weighting,
@@ -96,6 +99,20 @@ def _refuse_undetermined(chosen: ModelScore, table: SupplierTable) -> None:
     )
 
 
+def at_largest(chosen: ModelScore) -> str:
+    """In words, the parameters that end at the largest value that a motor may have, and what that is a sign of: speeds
+    in rad/s under rpm ended at a K2 that loses twice the motor's torque at the speed that it truly turns at."""
+    fitted = chosen.fitted
+    values = zip(fitted.model.parameters, fitted.model.values, strict=True)
+    largest = [each.name for each, value in values if each.name in fitted.at_bound and value > max(each.lower, 0.0)]
+    if not largest:
+        return ""
+    return (
+        f"{', '.join(largest)} of '{chosen.name}' end at the largest value that any motor has: is the unit of the "
+        "speed, the pressure or the displacement another than its header says"
+    )
+
+
 def motor_seed(found: MotorIdentification, name: str, provenance: dict[str, Any]) -> FrictionModel:
     """The chosen fit as a seed model: values, covariance, where they come from."""
     result = found.chosen.fitted
@@ -108,4 +125,6 @@ def motor_seed(found: MotorIdentification, name: str, provenance: dict[str, Any]
         "condition": result.condition,
         **provenance,
     }
+    if beyond := at_largest(found.chosen):
+        said["forced"] = beyond
     return replace(result.model, name=name, provenance=said)

@@ -152,6 +152,7 @@ def run_practice(
     seed: int = 0,
     progress: Progress = silent,
     complex_options: Mapping[str, int] | None = None,
+    force: bool = False,
 ) -> Practice:
     """All four steps, the second loop, the joint fit and the verification."""
     spread = spread or load_unit_spread()
@@ -167,6 +168,7 @@ def run_practice(
         seed=seed,
         progress=progress,
         complex_options=complex_options,
+        force=force,
     )
     fitted = motor_seed(motor, f"{folder.name}_motor", provenance)
     system = identify_system(

@@ -3,7 +3,7 @@
 import numpy as np
 
 from winch_friction.identification.fit_data import modelled
-from winch_friction.identification.motor_identification import MotorIdentification
+from winch_friction.identification.motor_identification import MotorIdentification, at_largest
 from winch_friction.identification.supplier_table import SupplierTable
 from winch_friction.physics.channels import BAR, CM3_PER_REV, RPM
 
@@ -16,15 +16,8 @@ BEYOND = 1.02  # of D_max: sizes are rounded, 107 cm^3/rev is 106.7
 
 def remarks_on(found: MotorIdentification) -> list[str]:
     """Rows that stand out from the fit, parameters at the largest value a motor may have, strokes beyond D_max."""
-    fitted, table = found.chosen.fitted, found.table
-    values = zip(fitted.model.parameters, fitted.model.values, strict=True)
-    largest = [each.name for each, value in values if each.name in fitted.at_bound and value > max(each.lower, 0.0)]
-    said = _beyond(table)
-    if largest:
-        said.append(
-            f"{table.name}: {', '.join(largest)} of '{found.chosen.name}' end at the largest value that any motor has: "
-            "is the unit of the speed, the pressure or the displacement another than its header says?"
-        )
+    table, largest = found.table, at_largest(found.chosen)
+    said = [*_beyond(table), *([f"{table.name}: {largest}?"] if largest else [])]
     return said + _slips(found, table)
 
 

@@ -1,5 +1,4 @@
-"""What is believed: a stamp that advances, a sender with one voice, a drive that can be a winch's, a command and a
-speed that fit each other; the load and the drive's torque are in `doubt`."""
+"""What is believed: a stamp, a sender of one voice, a drive, a command beside a speed; loads are in `doubt`."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -8,7 +7,8 @@ from enum import Enum
 from typing import Any
 
 from winch_friction.compensation.safe_output import AGAINST_SPEED, LONGEST_LAG
-from winch_friction.online.doubt import Doubt, LoadAgainstDrive, StandingReadings, Way, WireAgainstSpeed, span
+from winch_friction.online.doubt import Doubt, StandingReadings, WireAgainstSpeed, span
+from winch_friction.online.load_against_drive import LoadAgainstDrive, Way
 from winch_friction.physics.signals import Sample
 from winch_friction.physics.winch.crane import Crane, sample_drive_torque
 from winch_friction.physics.winch.operating_point import SPEED_APART, SPEED_SHARE, ChannelRanges
@@ -30,6 +30,7 @@ class Stamp(Enum):
 
     GOOD = "good"
     REPEATED = "stamp stands still"
+    LATE = "stamp before that of the last message"
     AHEAD = "stamp ahead of the clock"
     BACK = "stamp far behind"
     JUMP = "the clock was set"
@@ -60,7 +61,7 @@ class StampWatch:
             return self._doubt(stamp, now, Stamp.AHEAD)
         slowest = SLOWEST * min(max(passed, 0.0), LONGEST_CATCH_UP) if self.paced else 0.0
         if gained <= 0.0 or gained < slowest:
-            return Stamp.REPEATED
+            return Stamp.LATE if gained < 0.0 else Stamp.REPEATED
         return self._believe(stamp, now, Stamp.GOOD)
 
     def forget(self) -> None:
@@ -122,8 +123,7 @@ class Voices:
         )
 
     def _reach(self, name: str) -> float:
-        lower, upper = self._ranges.range(name)
-        return max(abs(lower), abs(upper))
+        return max(map(abs, self._ranges.range(name)))
 
 
 # -- two senders

@@ -30,8 +30,12 @@ class BeforeDoubt:
 
     def begin(self) -> None:
         """Believe what the estimator knows now: the seed, or what a checkpoint held."""
-        self.believed = self._look(math.nan)
+        self.believed = self._begun = self._look(math.nan)
         self._next: Learned | None = None
+
+    def go_back(self) -> None:
+        """Believe what was known at the beginning, and nothing since."""
+        self.believed, self._next = self._begun, None
 
     def step(self, time: float, doubted: bool) -> None:
         """One sample, stamped `time` s."""

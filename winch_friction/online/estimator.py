@@ -8,19 +8,22 @@ from typing import Any
 from winch_friction.compensation.safe_output import AGAINST_SPEED
 from winch_friction.estimation import Estimate, EstimatorConfig, FrictionEstimator
 from winch_friction.estimation.answers import ParameterEstimate
+from winch_friction.estimation.interval import FrictionFunctions
 from winch_friction.estimation.sample import absent
 from winch_friction.online.agreement import DriveByItself
 from winch_friction.online.before_doubt import BeforeDoubt
 from winch_friction.online.compensator import LEARNED_AT
-from winch_friction.online.doubt import LoadAgainstDrive, StandingReadings, WireAgainstSpeed, span
+from winch_friction.online.doubt import StandingReadings, WireAgainstSpeed, span
 from winch_friction.online.inertia_balance import InertiaBalance
 from winch_friction.online.inputs import InputGate, ServiceOptions
+from winch_friction.online.load_against_drive import LoadAgainstDrive
 from winch_friction.online.load_balance import LoadBalance
 from winch_friction.physics.channels import SLOW_INPUTS
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.friction.term import needed
 from winch_friction.physics.signals import ASSUMED, LOST, Sample
-from winch_friction.physics.winch.crane import Crane
+from winch_friction.physics.winch.crane import Crane, sample_load
+from winch_friction.physics.winch.operating_point import sample_operating_point
 from winch_friction.records.sample_stream import InputHold
 from winch_friction.records.topics import Input, TopicMap
 
@@ -50,7 +53,8 @@ class EstimatorService:
         self._watch_loads()
         self._enabled, self._seen = True, math.nan
         self._stands = False  # a torque was said, and nothing after it
-        self._gain = InertiaBalance(self.law.crane)
+        self._seed_friction = FrictionFunctions(self.law.seed)
+        self._gain = InertiaBalance(self.law.crane, self._expected)
         self._before = BeforeDoubt(self.law)
         self._published, self._published_at = -math.inf, -math.inf
 
@@ -116,10 +120,18 @@ class EstimatorService:
         if learned.accepted:
             self._slow = self._balance.contradiction(self.law.load_apart, sample) or gain
         if (lost or self._slow) and not self.contradiction:
+            if self._gain.from_the_beginning:
+                self._before.go_back()
             self.law.take_back(self._before.believed.content)
         self.contradiction = lost or self._slow
         self._before.step(sample.time, self._pending)
         self.law.set_enabled(self._enabled and not self.contradiction)
+
+    def _expected(self, sample: Sample, speed: float) -> float:
+        """The seed's friction of a sample at a speed, rad/s, in N m."""
+        load = self.law.crane.drum_torque(sample_load(sample), sample.wire_layer)
+        point = sample_operating_point(sample, self.law.crane, drum_torque=load, speed=speed)
+        return self._seed_friction.torque(point, self.law.seed.values, len(sample.groups))
 
     @property
     def _pending(self) -> bool:

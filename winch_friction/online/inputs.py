@@ -70,7 +70,7 @@ class ServiceOptions:
 
 # -- all of them
 SILENT = "motor_speed ('inputs' says why)"  # what is missing where no speed comes
-TWO_VOICES, LATE = "two values under one stamp", "stamp before that of the last message"
+TWO_VOICES = "two values under one stamp"
 MOTION = "motor_speed", "speed_reference"
 TWO_MOTIONS = "two motions in turn: does a recording or a simulator send beside the machine?"
 
@@ -148,7 +148,8 @@ class InputGate:
             arrivals.after += abs(stamp - self.last_stamp) <= SIMULTANEOUS and stamp != arrivals.stamp
             arrivals.stamp = stamp
         else:
-            self._refuse(arrivals, self._refusal or (LATE if source.decode(message) else source.illegible(message)))
+            late = Stamp.LATE.value if source.decode(message) else source.illegible(message)
+            self._refuse(arrivals, self._refusal or late)
         return None
 
     def _unstamped_refusal(self, source: Input, message: Any, now: float) -> str:

@@ -3,7 +3,8 @@
 import math
 
 from winch_friction.compensation.safe_output import AGAINST_SPEED
-from winch_friction.online.doubt import LEAST_KNOWN, Doubt, shown_by, span
+from winch_friction.online.doubt import Doubt, span
+from winch_friction.online.load_against_drive import LEAST_KNOWN, shown_by
 from winch_friction.physics.signals import Sample
 from winch_friction.physics.winch.crane import sample_load
 

@@ -39,7 +39,7 @@ def atomic_path(path: Path) -> Iterator[Path]:
     try:
         temporary.touch(mode=0o600)
     except OSError as error:  # nobody knows the temporary file's name
-        raise OSError(error.errno, f"cannot be written ({error.strerror})", str(path)) from None
+        raise OSError(error.errno, f"cannot be written ({error.strerror}); give another place", str(path)) from None
     try:
         with writing(path, str(temporary)):
             yield temporary

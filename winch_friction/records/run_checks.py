@@ -217,7 +217,9 @@ def _with_motor_speed(
     if "drum_speed" not in columns:
         _refuse_empty(name, [each for each in ("motor_speed", "drum_speed") if each in empty][:1])
         near = [said for said in aside or {} if meant("motor_speed", [said.partition("[")[0].strip()])]
-        found = f"found {', '.join(columns)}" + (_NO_RUN if set(columns) <= {"time"} and aside else "")
+        found = f"found {', '.join(columns) or 'no known column'}" + (
+            _NO_RUN if set(columns) <= {"time"} and aside else ""
+        )
         slip = f"'{near[0]}': did you mean motor_speed?" if near else found
         raise InputError(f"{name}: column 'motor_speed' (or 'drum_speed') is missing; {slip}")
     if crane is None:

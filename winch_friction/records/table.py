@@ -63,9 +63,11 @@ class Table:
         except ValueError:
             value = math.nan
         if not math.isfinite(value):
-            said = repr(text) if text else "nothing"
+            where = f"{self.path} row {row}: column '{column}'"
+            if not text:
+                raise InputError(f"{where} is empty; give a number, or leave the row out")
             advice = "; write it with a point" if _DECIMAL_COMMA.fullmatch(text) else ""
-            raise InputError(f"{self.path} row {row}: column '{column}' holds {said}, not a finite number{advice}")
+            raise InputError(f"{where} holds {text!r}, not a finite number{advice}")
         return value
 
     def refuse(self, column: str, bad: Any, reason: str) -> None:

@@ -12,8 +12,11 @@ import numpy as np
 from scipy.linalg.blas import dtbsv
 from scipy.ndimage import convolve1d, maximum_filter1d, median_filter
 
+from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.signals import FloatArray, Run
+from winch_friction.physics.winch import Crane
+from winch_friction.physics.winch.layers import WORTH_SAYING, layer_changes, lost_to_layers
 
 MIN_SAMPLES = 10  # below it not even a speed can be smoothed
 LONG_RECORD, FASTEST_PERIOD = 60_000, 0.01  # samples; s
@@ -132,6 +135,23 @@ def _weights(window: int, order: int) -> tuple[FloatArray, FloatArray, FloatArra
     powers = np.vander(np.linspace(-1.0, 1.0, window), order + 1)
     fitted = powers @ np.linalg.pinv(powers)
     return fitted[window // 2], fitted[: window // 2], fitted[window // 2 + 1 :]
+
+
+def beside_climbs(runs: Sequence[Run], crane: Crane) -> tuple[list[Run], list[str]]:
+    """The runs that have something to tell beside the places where a rope climbs onto another layer, and what is said
+    of those that lose much or all to them."""
+    kept, notes = [], []
+    for run in runs:
+        near = layer_changes(run, crane).near
+        left = (1.0 - near) * float(run.time[-1] - run.time[0])  # s
+        if near < WORTH_SAYING:
+            kept.append(run)
+        elif left < LIMITS.shortest_record:
+            notes.append(f"{lost_to_layers(run, crane)}; left out")
+        else:
+            notes.append(lost_to_layers(run, crane))
+            kept.append(run)
+    return kept, notes
 
 
 def thinned(run: Run) -> Run:

@@ -14,6 +14,7 @@ from winch_friction.discrepancy.preparation.seen import Motion
 from winch_friction.physics.channels import GRAVITY
 from winch_friction.physics.signals import FloatArray
 from winch_friction.physics.winch import Crane
+from winch_friction.physics.winch.layers import CLIMBS, away_from
 
 COURSE = "hook_load_course"  # a load cell's column whose level, another in each run, is not believed: kg
 CONSTANT = 0.05  # a load cell's noise is not the load: a hanging mass that stays within 5 % is constant ...
@@ -24,8 +25,7 @@ FOLLOWS_WIRE, HEAVIEST_WIRE, HEAVIEST_UNKNOWN = 0.5, 1.5, 200.0
 # relative spread of a wire's stiffness over runs: by less a load is followed for a dozen periods; of it, what is less
 OUT_OF_TUNE, CLEARLY_CLOSER = 0.02, 0.5
 STILL, MOST_STILL = 2.0 / 3.0, 0.6  # of a wire's mass; of what hangs, of which a wire is nine tenths at most
-# rad of the drum, half a turn, in which a rope is on its next layer, along the flange; s, of a drum that stands by then
-CLIMBS, LONGEST_CLIMB = np.pi, 10.0
+LONGEST_CLIMB = 10.0  # s, of a drum that stands by then
 SETTLED = 4.0  # decay times, down to 2 %
 
 
@@ -110,12 +110,7 @@ class SuspendedLoad:
     def on_one_layer(self, angle: FloatArray, gear_ratio: float) -> np.ndarray:
         """Samples that are half a turn of the drum and more, by the shaft's angle in rad, away from any at which the
         layer changes: nobody logs where on the flange a rope climbs, nor how long that takes."""
-        changes = np.sort(angle[1:][np.diff(self.radius) != 0.0])
-        if not len(changes):
-            return np.ones(len(angle), bool)
-        after = np.searchsorted(changes, angle)
-        around = (changes[np.clip(after - one, 0, len(changes) - 1)] for one in (0, 1))
-        return np.min([np.abs(angle - each) for each in around], axis=0) > CLIMBS * gear_ratio
+        return away_from(angle, angle[1:][np.diff(self.radius) != 0.0], gear_ratio)
 
     def on_wire(self, dt: float, mode: Mode, length: FloatArray | None) -> "SuspendedLoad":
         """The load behind the wire's mode, whose `length` m it may follow; as it is where nothing is heard of one."""

@@ -26,8 +26,8 @@ from winch_friction.physics.signals import GroupSample, Run, Sample
 from winch_friction.records.runs import write_run
 
 ROOT = str(Path(winch_friction.__file__).parent) + "/"
-MOST_OF_A_GAP = 57  # `check` reads where a rope climbs apart from `gap`
-MOST_OF_A_MESSAGE = 15  # load and drive torque are read apart from the other doubts, as by the estimator
+MOST_OF_A_GAP = 56
+MOST_OF_A_MESSAGE = 14
 
 
 class Visited:

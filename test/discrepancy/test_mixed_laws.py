@@ -11,7 +11,7 @@ from winch_friction.discrepancy.answer import GapOptions
 from winch_friction.discrepancy.candidates.candidate import BALANCING, ParameterEstimate, Shape, Sides
 from winch_friction.discrepancy.candidates.feedback import bowed_columns, feedback_candidates
 from winch_friction.discrepancy.candidates.signals import DELAY, SPEED, signal_candidates
-from winch_friction.discrepancy.detectors.delay import long_delay, without_delay
+from winch_friction.discrepancy.detectors.delay import without_delay
 from winch_friction.discrepancy.engine.blocks import Slot
 from winch_friction.discrepancy.estimates import agreed, in_file, of_part, together
 from winch_friction.discrepancy.expansion import as_rigid, meet, swings
@@ -19,6 +19,7 @@ from winch_friction.discrepancy.preparation.suspended_load import Mode
 from winch_friction.discrepancy.preparation.wires import agreed_modes
 from winch_friction.discrepancy.proof import at_the_floor
 from winch_friction.discrepancy.regressors import key_of
+from winch_friction.discrepancy.search import long_delay
 from winch_friction.discrepancy.workflow import find_gap
 from winch_friction.physics.channels import CM3_PER_REV
 from winch_friction.physics.corrections import corrected

@@ -10,7 +10,9 @@ import pytest
 from winch_friction.discrepancy.candidates.candidate import Candidate, Shape
 from winch_friction.discrepancy.candidates.signals import PRESSURES, SMALL_DELAY, SPEED, tau
 from winch_friction.discrepancy.detectors import delay
+from winch_friction.discrepancy.detectors.delay_course import passing_delay
 from winch_friction.discrepancy.engine.blocks import Slot
+from winch_friction.discrepancy.search import long_delay
 from winch_friction.physics.friction import FrictionModel
 
 SIZE, MODE = 0.1, (3.0, 0.05, None)
@@ -138,9 +140,9 @@ def test_what_is_suspected_of_a_clock_that_drifts_is_its_delay_in_the_middle(lat
 def test_a_small_delay_as_long_as_one_may_be_is_taken_out_of_the_runs(value, long):
     slot = Slot(delay.DELAY, "small", (0,), origin=(None, Shape("small", SMALL_DELAY)))
     cross = SimpleNamespace(size=lambda explanation, slot: value)
-    assert delay.long_delay([slot], cross, SimpleNamespace(slots=(slot,))) == (slot if long else None)
+    assert long_delay([slot], cross, SimpleNamespace(slots=(slot,))) == (slot if long else None)
     # what is only near to what was found has no size of its own
-    assert delay.long_delay([slot], cross, SimpleNamespace(slots=())) is None
+    assert long_delay([slot], cross, SimpleNamespace(slots=())) is None
 
 
 @pytest.mark.parametrize("side", [SPEED, PRESSURES])
@@ -308,7 +310,7 @@ def passing(kind, late, excess=1.0, train=("run",), more=(), noise=0.0):
     for run in runs:
         run.gap = run.gap + noise * np.random.default_rng(9).normal(0.0, 1.0, len(run.gap))
     cross = SimpleNamespace(excess=lambda base: excess, problem=SimpleNamespace(slots=late_slots()))
-    found = delay.passing_delay(SimpleNamespace(prepared=[*runs, *more]), train, cross, None)
+    found = passing_delay(SimpleNamespace(prepared=[*runs, *more]), train, cross, SimpleNamespace(base=None))
     return found and found.label
 
 

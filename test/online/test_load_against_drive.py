@@ -8,7 +8,7 @@ from sea import CRANE, SEED, TOPICS
 
 from winch_friction.online.agreement import Agreement
 from winch_friction.online.compensator import CompensatorService
-from winch_friction.online.load_against_drive import LEAST_KNOWN
+from winch_friction.online.doubt import LEAST_KNOWN
 from winch_friction.physics.channels import GRAVITY
 from winch_friction.physics.signals import GroupSample, Sample
 from winch_friction.physics.winch.crane import Drive

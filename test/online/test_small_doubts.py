@@ -19,8 +19,16 @@ from winch_friction.online.agreement import (
     Voices,
 )
 from winch_friction.online.consumer import HeldTorque
-from winch_friction.online.doubt import LONGEST_SPAN, Doubt, StandingReadings, span
-from winch_friction.online.load_against_drive import LEAST_KNOWN, MEMORY, LoadAgainstDrive, Way
+from winch_friction.online.doubt import (
+    LEAST_KNOWN,
+    LONGEST_SPAN,
+    MEMORY,
+    Doubt,
+    LoadAgainstDrive,
+    StandingReadings,
+    Way,
+    span,
+)
 from winch_friction.online.load_balance import LoadBalance
 from winch_friction.physics.signals import GroupSample, Sample
 from winch_friction.physics.winch.operating_point import ChannelRanges

@@ -6,8 +6,7 @@ import pytest
 
 from winch_friction.commissioning.commissioning import _of_changing_layers
 from winch_friction.discrepancy.preparation.grid import beside_climbs
-from winch_friction.physics.signals import Run
-from winch_friction.physics.winch.layers import away_from, layer_changes
+from winch_friction.physics.signals import Run, away_from, layer_changes
 from winch_friction.records.crane_file import load_crane
 
 CRANE = load_crane("crane_150t")
@@ -39,7 +38,7 @@ def test_a_counter_that_flips_is_told_from_a_rope_that_climbs():
 
 
 def test_a_rope_that_climbs_in_a_long_hoist_is_nothing_to_say():
-    assert layer_changes(sailed(climbs(3.0), 12.0), CRANE).near < 0.2
+    assert layer_changes(sailed(climbs(3.0), 12.0), CRANE.gear_ratio, CRANE.speed_scale).near < 0.2
     assert said(sailed(climbs(3.0), 12.0)) == []
     assert said(sailed(lambda time, _turns: 5.0 + 0.0 * time, 12.0)) == []
 
@@ -57,7 +56,7 @@ def test_cells_without_a_number_are_no_change(broken):
     run = sailed(climbs(3.0), 2.0)
     run.columns["wire_layer"][100:200] = broken
     run.columns["motor_speed"][50] = np.nan
-    assert layer_changes(run, CRANE) == (0, 0.0, 0)
+    assert layer_changes(run, CRANE.gear_ratio, CRANE.speed_scale) == (0, 0.0, 0)
 
 
 def test_half_a_turn_of_the_drum_is_away():

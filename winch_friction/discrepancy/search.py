@@ -16,11 +16,12 @@ from winch_friction.discrepancy.answer import MISSING, NOTHING, UNEXPLAINED, Eff
 from winch_friction.discrepancy.candidates.candidate import MOVING, REVERSALS, Candidate, Estimates, Shape, Untestable
 from winch_friction.discrepancy.candidates.friction import blurred_travel
 from winch_friction.discrepancy.candidates.geometry import GAS
-from winch_friction.discrepancy.candidates.signals import DELAY
+from winch_friction.discrepancy.candidates.signals import DELAY, SMALL, tau
 from winch_friction.discrepancy.catalogue import at_hand, testable
 from winch_friction.discrepancy.detectors import flow_balance
 from winch_friction.discrepancy.detectors import ripple as angle
-from winch_friction.discrepancy.detectors.delay import long_delay, passing_delay, without_delay
+from winch_friction.discrepancy.detectors.delay import without_delay
+from winch_friction.discrepancy.detectors.delay_course import passing_delay
 from winch_friction.discrepancy.detectors.lost_flow import FreeAir, Leakage
 from winch_friction.discrepancy.detectors.ripple import Ripple
 from winch_friction.discrepancy.detectors.ripple_waves import waves_of, without_ripple
@@ -38,6 +39,7 @@ from winch_friction.physics.winch import Crane
 
 LastResort = Callable[[Sequence[PreparedRun], FrictionModel], list[Candidate]]
 BY_LOAD = ("gear_load_loss", "sheave_bending")
+PRESSES = 0.5  # of the longest small delay: of a filter of 60 ms the first derivative told 33
 
 # -- just after reversals
 SIGNIFICANCE_AFTER_REVERSALS = 0.005
@@ -134,13 +136,25 @@ def after_reversals(
 # -- the search
 @dataclass(frozen=True)
 class Study:
-    """What every step of one call shares: its runs and which are locked, their crane, what the user chose, and the one
-    source of chance."""
+    """What every step of one call shares: which runs are locked, the crane, what the user chose, the source of chance."""
 
     split: Split
     crane: Crane
     options: GapOptions
     rng: np.random.Generator
+
+
+def long_delay(slots: Sequence[Slot], cross: CrossFit, fitted: Explanation) -> Slot | None:
+    """The first delay among these that its first derivative does not tell: of the longer ones that are tried, or a
+    small one that was fitted so large that it may be longer."""
+    for slot in slots:
+        if slot.name != DELAY or slot.law:
+            continue
+        shape: Shape = slot.origin[1]
+        small = 0.0 not in (shape.values["ahead"], shape.values["behind"])
+        if not small or slot in fitted.slots and abs(cross.size(fitted, slot)) >= PRESSES * SMALL * tau.typical:
+            return slot
+    return None
 
 
 @dataclass(frozen=True)
@@ -195,9 +209,7 @@ def search_runs(study: Study, given: Given, also: LastResort | None = None) -> S
         candidates, usable = (_refined(each, shapes) for each in (candidates, usable))
         if not selection.final.slots and (most := most_of_it(cross, selection.base)):
             shapes = (most,)
-        late = long_delay(shapes, cross, selection.final)
-        if not shapes:
-            late = passing_delay(given, train, cross, selection.base)
+        late = long_delay(shapes, cross, selection.final) if shapes else passing_delay(given, train, cross, selection)
         if late is not None:
             candidates = without_delay(given, candidates, late, cross, selection.final, train)
         del cross  # the largest thing there is, and not needed beside the next one

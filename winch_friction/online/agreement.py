@@ -7,8 +7,7 @@ from enum import Enum
 from typing import Any
 
 from winch_friction.compensation.safe_output import AGAINST_SPEED, LONGEST_LAG
-from winch_friction.online.doubt import Doubt, StandingReadings, WireAgainstSpeed, span
-from winch_friction.online.load_against_drive import LoadAgainstDrive, Way
+from winch_friction.online.doubt import Doubt, LoadAgainstDrive, StandingReadings, Way, WireAgainstSpeed, span
 from winch_friction.physics.signals import Sample
 from winch_friction.physics.winch.crane import Crane, sample_drive_torque
 from winch_friction.physics.winch.operating_point import SPEED_APART, SPEED_SHARE, ChannelRanges

@@ -13,10 +13,9 @@ from winch_friction.estimation.sample import absent
 from winch_friction.online.agreement import DriveByItself
 from winch_friction.online.before_doubt import BeforeDoubt
 from winch_friction.online.compensator import LEARNED_AT
-from winch_friction.online.doubt import StandingReadings, WireAgainstSpeed, span
+from winch_friction.online.doubt import LoadAgainstDrive, StandingReadings, WireAgainstSpeed, span
 from winch_friction.online.inertia_balance import InertiaBalance
 from winch_friction.online.inputs import InputGate, ServiceOptions
-from winch_friction.online.load_against_drive import LoadAgainstDrive
 from winch_friction.online.load_balance import LoadBalance
 from winch_friction.physics.channels import SLOW_INPUTS
 from winch_friction.physics.friction import FrictionModel

@@ -3,10 +3,10 @@
 import math
 
 from winch_friction.compensation.safe_output import AGAINST_SPEED
-from winch_friction.online.doubt import Doubt, span
-from winch_friction.online.load_against_drive import LEAST_KNOWN, shown_by
+from winch_friction.online.doubt import LEAST_KNOWN, Doubt, span
 from winch_friction.physics.signals import Sample
 from winch_friction.physics.winch.crane import sample_load
+from winch_friction.physics.winch.operating_point import shown_by
 
 # the load cell's load and the one that the balance of torques gives while it is learned from: a load cell, a
 # displacement feedback and a tare of a few per cent each; a sea passes once in this time, a picked-up load settles

@@ -12,9 +12,8 @@ import numpy as np
 from winch_friction.discrepancy.preparation.grid import Grid, recursive, smooth
 from winch_friction.discrepancy.preparation.seen import Motion
 from winch_friction.physics.channels import GRAVITY
-from winch_friction.physics.signals import FloatArray
+from winch_friction.physics.signals import CLIMBS, FloatArray, away_from
 from winch_friction.physics.winch import Crane
-from winch_friction.physics.winch.layers import CLIMBS, away_from
 
 COURSE = "hook_load_course"  # a load cell's column whose level, another in each run, is not believed: kg
 CONSTANT = 0.05  # a load cell's noise is not the load: a hanging mass that stays within 5 % is constant ...

@@ -263,3 +263,27 @@ class ChannelRanges:
             full = self.crane.max_displacement
             changes["displacement"] = Change(10.0 * full, 0.1 * full)
         return changes
+
+
+# -- what a sample shows
+def shown_by(sample: Sample) -> str:
+    """What says the load of this sample, in words."""
+    if sample.hook_load == sample.hook_load:
+        return "hook_load"
+    return "rope_force" if sample.rope_force == sample.rope_force else "load (the parameter)"
+
+
+def has_torque(sample: Sample) -> bool:
+    """Whether a sample tells anything of the drive's torque."""
+    known = (sample.motor_torque, sample.mechanical_power, sample.motor_current)
+    return bool(sample.groups) or any(math.isfinite(each) for each in known)
+
+
+def readings_of(sample: Sample) -> tuple[object, ...]:
+    """All that was measured, so that equal ones compare equal where some are missing."""
+    scalars = (
+        sample.motor_torque, sample.mechanical_power, sample.motor_current, sample.hook_load, sample.rope_force,
+        sample.heave_velocity, sample.wire_out, sample.shaft_angle, sample.load_torque,
+    )  # fmt: skip
+    groups = [(each.pressure_a, each.pressure_b, each.displacement) for each in sample.groups.values()]
+    return tuple(None if each != each else each for values in (scalars, *groups) for each in values)

@@ -1,0 +1,110 @@
+"""A delay that changes within a run: a buffer fills up and is emptied, a backlog is worked off, one comes to stay."""
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from winch_friction.discrepancy.candidates.signals import (
+    DELAY,
+    DRAINS_IN,
+    FILLS_IN,
+    PRESSURES,
+    SETTLES_IN,
+    SPEED,
+    delay_columns,
+)
+from winch_friction.discrepancy.engine import FloatArray
+from winch_friction.discrepancy.engine.blocks import Slot
+from winch_friction.discrepancy.engine.crossfit import CrossFit
+from winch_friction.discrepancy.engine.selection import Selection
+from winch_friction.discrepancy.expansion import Given
+from winch_friction.discrepancy.preparation.prepare import PreparedRun
+from winch_friction.discrepancy.thresholds import LIMITS
+from winch_friction.physics.corrections import lateness
+
+LOOKED_FOR = 0.1  # s, a delay that changes within a run, if none that stays is suspected
+SOONEST = 5.0  # s; what comes as often as waves do is not told from what waves do
+FILLINGS = 1.25  # in the median run: of one that is not seen to start again, or to end, it is a clock that drifts
+COHERENT = 0.2  # of a filling, by which neighbours on the grid of periods differ at the end of what is looked at
+FINER = 41  # around the best period on the grid: a hundredth of a filling apart at the end of what is looked at
+APART = 1.1  # times a time constant: what is a tenth slower tells 1 % less of it
+LOOKED_AT = 600.0  # s of each run: enough for a hundredth of a period, and no more of an hour's log than of a test's
+BIN = 0.05  # s, a hundredth of the soonest: within it a delay hardly grows
+EMPTY = 1e-300  # where a column is nothing
+
+
+class Course(NamedTuple):
+    """How a delay changes from each run's beginning on, the time constant in s, what it is at most in s (of the speed
+    behind the pressures), and what it tells of a gap's square."""
+
+    told: float
+    how: str
+    over: float
+    most: float
+
+
+def passing_delay(given: Given, train: tuple[str, ...], cross: CrossFit, selection: Selection) -> Slot | None:
+    """A delay of about a tenth of a second that is gone, or not yet there, for most of each run, where that tells a
+    good part of what the base leaves and one that stays tells little. None where nothing is missing."""
+    if cross.excess(selection.base) <= LIMITS.least_excess:
+        return None
+    delays = [slot for slot in cross.problem.slots if slot.name == DELAY and not slot.law]
+    runs = [run for run in given.prepared if run.name in train]
+    total = sum(float(run.gap[run.used] @ run.gap[run.used]) for run in runs)
+    best: tuple[float, Slot | None] = (LIMITS.proposal_gain * total, None)
+    for slot in delays:
+        values = slot.origin[1].values
+        if max(values["ahead"], values["behind"]) == LOOKED_FOR:
+            told = course_of(runs, values["ahead"] - values["behind"]).told
+            best = max(best, (told, slot), key=lambda each: each[0])
+    return best[1]
+
+
+def course_of(runs: Sequence[PreparedRun], size: float) -> Course:
+    """The course of a delay of about `size` s that tells most of these runs' gap, and nothing where one that stays, or
+    grows on, tells as much.
+
+    One time constant after the other, as a periodogram has its periods; what the delay is at most is fitted to each.
+    """
+    durations = np.minimum([run.time[-1] for run in runs], LOOKED_AT)
+    behind = {"ahead": max(size, 0.0), "behind": max(-size, 0.0), "late": SPEED if size > 0.0 else PRESSURES}
+    parts = [_binned(run, delay_columns(run, behind)[:, 0]) for run in runs]
+    time, along, square = (np.concatenate(each) for each in zip(*parts, strict=True))
+
+    def told(share: FloatArray) -> float:
+        return max(float(np.sign(size) * (share @ along)), 0.0) ** 2 / max(float(share**2 @ square), EMPTY)
+
+    def best(often: FloatArray, how: str) -> tuple[float, float, str]:
+        return max(((told(_share(how, time, 1.0 / each)), 1.0 / each, how) for each in often), default=(0.0, 0.0, how))
+
+    slowest, step = FILLINGS / float(np.median(durations)), COHERENT / float(durations.max())
+    _, period, _ = best(np.arange(slowest, 1.0 / SOONEST, step), FILLS_IN)
+    near = 1.0 / period + step * np.linspace(-1.0, 1.0, FINER) if period > 0.0 else np.empty(0)
+    decays = slowest * APART ** np.arange(max(np.log(1.0 / SOONEST / slowest) / np.log(APART), 0.0))
+    most, over, how = max(best(near, FILLS_IN), best(decays, DRAINS_IN), best(decays, SETTLES_IN))
+    if most <= max(told(np.ones_like(time)), told(time)):
+        return Course(0.0, "", 0.0, 0.0)
+    share = _share(how, time, over)
+    return Course(most, how, float(over), float(share @ along) / float(share**2 @ square))
+
+
+def _share(how: str, since: FloatArray, over: float) -> FloatArray:
+    """What there is of a delay that changes in this way over a time constant, `since` s from a run's beginning."""
+    if how == FILLS_IN:
+        return lateness("buffer", since, over)
+    left = lateness("backlog", since, over)
+    return left if how == DRAINS_IN else 1.0 - left
+
+
+def _binned(run: PreparedRun, column: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Of a run's beginning, in bins of time: their middle in s, and the sums that a fit of the gap by this column
+    takes."""
+    own = run.used & (run.time < LOOKED_AT)
+    at = np.floor(run.time[own] / BIN).astype(int)
+
+    def summed(other: FloatArray) -> FloatArray:
+        return np.bincount(at, column[own] * other[own]).astype(float)
+
+    along, square = summed(run.gap), summed(column)
+    return (np.arange(len(along), dtype=float) + 0.5) * BIN, along, square

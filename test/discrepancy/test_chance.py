@@ -77,7 +77,7 @@ def test_beside_a_higher_order_only_the_same_column_is_another_name(same, more, 
 
 @pytest.mark.parametrize("less", [1e-9, -1e-9])
 def test_of_rivals_that_are_one_over_the_runs_the_first_listed_comes_first(less):
-    """A set has room for few: a brake's drag is the motors' Coulomb friction, and rounding cut it out of its own set."""
+    """A set has room for few: a brake's drag is Coulomb friction as well, and rounding cut it out of its own set."""
     own, brake, coulomb = Slot("stribeck", "", (1,)), Slot("brake", "", (2,)), Slot("coulomb", "", (3,))
     left = {None: 3.0, own: 1.0, brake: 1.001, coulomb: 1.001 * (1.0 - less)}
 

@@ -290,7 +290,7 @@ def line(values: Values, _: Sequence[PreparedRun]) -> bool:
 
 
 def port(values: Values, _: Sequence[PreparedRun] = ()) -> bool:
-    """Oil through a port loses D (D w)^n; what is steeper in D follows one group's flow beside another at its end."""
+    """Oil through a port loses D (D w)^n; what is far steeper in D follows the flow of one group alone."""
     return all(values[f"m_{law}"] <= values[f"n_{law}"] + STEEPEST for law in ("pp", "po") if f"m_{law}" in values)
 
 

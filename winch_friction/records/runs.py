@@ -235,7 +235,7 @@ def without_broken(runs: Sequence[Run]) -> tuple[list[Run], list[Broken]]:
 def _standing(time: FloatArray, values: FloatArray, changes: np.ndarray, others: Sequence[np.ndarray]) -> np.ndarray:
     """Samples (samples,) that repeat the one before for long, while another channel lives; none of a winch at rest."""
     still = np.zeros(len(values), bool)
-    long = [(a, b) for a, b in _long_spells(time, values, changes) if values[a] != 0.0]
+    long = [(a, b) for a, b in _long_spells(time, values, changes, _leaps(values)) if values[a] != 0.0]
     rest = np.ones(len(changes), bool)
     for a, b in long:
         rest[a : b - 1] = False
@@ -251,7 +251,7 @@ def _hanging(time: FloatArray, values: FloatArray, changes: np.ndarray, others: 
     """Samples (samples,) of a speed that repeat the one before for long, while another channel lives, and from which it
     leaps: a coarse one rests on its digits, and goes on from there by steps."""
     still, leaps = np.zeros(len(values), bool), _leaps(values)
-    for a, b in _long_spells(time, values, changes):
+    for a, b in _long_spells(time, values, changes, leaps[:0]):
         if b < len(values) and leaps[b - 1] and any(each[a : b - 1].mean() >= LIVES for each in others):
             still[a + 1 : b] = True
     return still
@@ -273,11 +273,11 @@ def _leaps(values: FloatArray) -> np.ndarray:
     return steps > LEAPS * float(np.percentile(moved, QUICK)) if len(moved) else np.zeros(len(steps), bool)
 
 
-def _long_spells(time: FloatArray, values: FloatArray, changes: np.ndarray) -> list[tuple[int, int]]:
-    """First sample and end of what is repeated to the last digit for long."""
+def _long_spells(time: FloatArray, values: FloatArray, changes: np.ndarray, leaps: np.ndarray) -> list[tuple[int, int]]:
+    """First sample and end of what is repeated to the last digit for long, or until it leaps."""
     ends = np.flatnonzero(np.concatenate([[True], changes | np.isnan(values[1:] + values[:-1]), [True]]))
     spells = [(a, b) for a, b in itertools.pairwise(ends.tolist()) if b - a >= FEWEST]
-    return [(a, b) for a, b in spells if time[b - 1] - time[a] >= STILL]
+    return [(a, b) for a, b in spells if time[b - 1] - time[a] >= STILL or leaps[b - 1 : b].any()]
 
 
 def _jumping(values: FloatArray) -> np.ndarray:

@@ -219,6 +219,19 @@ def test_two_stribeck_curves_melt_into_one_between_them(speeds):
     assert both["C1"] == pytest.approx(4e-5, rel=0.15)
 
 
+def test_a_port_is_looked_for_where_oil_through_it_could_be():
+    """D (D w)^n, and one power more of a passage that narrows with the stroke; other laws of the cause are as they
+    were."""
+    ports = [each for each in families.literature() if each.name == "port_turbulence"]
+    runs = [SimpleNamespace(speed=np.array([200.0]), groups=("main",))]
+    shapes = {each.law_name: [shape.values for shape in each.shapes(runs)] for each in ports}
+    power = {(v["n_pp"], v["m_pp"]) for v in shapes["port_power"]}
+    assert {(2.0, 4.0), (1.5, 3.0), (3.0, 4.0)} <= power
+    assert (1.5, 4.0) not in power
+    assert len(shapes["port_one_way"]) == 2 * len(families.ONE_WAY)
+    assert all(each.possible({"n_le": 2.0, "b_le": 0.0}, runs) for each in ports)
+
+
 @pytest.mark.parametrize(("travel", "possible"), [(0.28, False), (0.32, True)])
 def test_presliding_is_told_over_three_times_the_travel_in_which_nobody_knows_when_the_shaft_turned(
     monkeypatch, travel, possible

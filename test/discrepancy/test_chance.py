@@ -75,6 +75,23 @@ def test_beside_a_higher_order_only_the_same_column_is_another_name(same, more, 
     assert (found == (other,)) is rival
 
 
+@pytest.mark.parametrize("less", [1e-9, -1e-9])
+def test_of_rivals_that_are_one_over_the_runs_the_first_listed_comes_first(less):
+    """A set has room for few: a brake's drag is Coulomb friction as well, and rounding cut it out of its own set."""
+    own, brake, coulomb = Slot("stribeck", "", (1,)), Slot("brake", "", (2,)), Slot("coulomb", "", (3,))
+    left = {None: 3.0, own: 1.0, brake: 1.001, coulomb: 1.001 * (1.0 - less)}
+
+    def explain(slots):
+        return replace(loses(own, np.full(40, left[slots[0] if slots else None])), slots=tuple(slots))
+
+    cross = SimpleNamespace(
+        explain=explain, floor=40.0, train_loss=lambda slots: (explain(slots).loss, None),
+        problem=SimpleNamespace(slots=(own, brake, coulomb), grams=SimpleNamespace(count=np.ones(40))),
+    )  # fmt: skip
+    found, _ = rivals_of(cross, explain((own,)), explain(()), 0, np.random.default_rng(0))
+    assert found == (brake, coulomb)
+
+
 @pytest.mark.parametrize(("free", "near_it"), [(False, True), (True, False)])
 def test_a_curve_of_another_cause_is_measured_like_any_law(free, near_it):
     """It bends as freely as the curve that was found: leaving more, it is no rival for its stiffness."""

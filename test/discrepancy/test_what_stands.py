@@ -99,6 +99,25 @@ def test_an_amount_that_may_be_none_is_no_finding_where_a_refit_leaves_noise(lef
     assert why.startswith("one: ") if refused else not why
 
 
+@pytest.mark.parametrize(("law", "n", "m", "port"), [
+    ("power", 1.63, 3.6, True), ("power", 1.63, 3.7, False), ("one_way", 1.0, 5.0, False), ("one_way", 2.0, 3.0, True),
+])  # fmt: skip
+def test_a_port_that_grows_much_faster_with_the_displacement_than_its_flow_is_none(monkeypatch, law, n, m, port):
+    """Of the pumps' own line to four active motors, beside six passive ones, a fit to the end made w^1.6 D^5."""
+    of = {"power": ("n_pp", "m_pp"), "one_way": ("n_po", "m_po")}[law]
+    values = {name: ParameterEstimate(value, 0.1, "1") for name, value in zip(of, (n, m), strict=True)}
+    rules = ("unproven", "leaves_too_much", "leaves_most", "fits_only_its_own", "within_a_sample", "within_a_step")
+    for name in (*rules, "within_load_cells", "_may_be_none"):
+        monkeypatch.setattr(module, name, lambda *_: "")
+    search = searched(replace(SLOTS[0], name="port_turbulence"))
+    full = Trial(search, SimpleNamespace(parameters={"port_turbulence": values}), side(), side())
+    trial, why = module._stands(search, SimpleNamespace(holdout=side(3.0)), lambda _: full, RNG)
+    assert (trial is full) is port
+    assert (why == "") is port
+    if not port:
+        assert why.startswith(f"port_turbulence: a loss with speed^{n:.3g} and displacement^{m:.3g} is no port's")
+
+
 @pytest.mark.parametrize("law", ["in some runs", "since a date", "by another amount in each run"])
 def test_a_law_that_chooses_its_runs_says_all_of_what_is_there_or_does_not_stand(law):
     """A drag in hoisting alone, in four runs of twelve, was "a feedback's zero in some runs" that left 2.3 noises."""

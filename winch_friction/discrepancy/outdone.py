@@ -1,17 +1,21 @@
-"""Names that do not stand beside one law of the grammar, which does by itself what they do, however well they fit."""
+"""Names that do not stand however well they fit: beside one law of the grammar that does by itself what they do, and
+where their own law in the file has become another cause's."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 
 import numpy as np
 
+from winch_friction.discrepancy.candidates.candidate import Estimates
 from winch_friction.discrepancy.candidates.families import shapes_over
+from winch_friction.discrepancy.candidates.friction import port
 from winch_friction.discrepancy.engine.blocks import Slot
 from winch_friction.discrepancy.engine.crossfit import CrossFit, Explanation, on_their_own
 from winch_friction.discrepancy.engine.grammar import Factor, Scored
 from winch_friction.discrepancy.engine.selection import Selection
 from winch_friction.discrepancy.proof import Trial, at_the_floor
 from winch_friction.discrepancy.proposals import near_laws
+from winch_friction.discrepancy.regressors import PORT
 from winch_friction.discrepancy.search import refused
 from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.discrepancy.vocabulary import FALLING, PICKING, RISING, UNLIKE_A_CURVE
@@ -39,6 +43,18 @@ def _closed(trial: Trial, rng: np.random.Generator) -> bool:
     a third of the gap, for which it would never have been given by itself.
     """
     return at_the_floor(trial.holdout) and not refused(trial.search, rng)
+
+
+def no_port(parameters: Mapping[str, Estimates]) -> str:
+    """Why a port's loss, of its law among the `parameters` of the written file, is none; empty where it is one.
+
+    The search asks the same of the shapes that it tries, but the file is fitted to the end.
+    """
+    found = {name: each.value for name, each in parameters.get(PORT, {}).items()}
+    if port(found):
+        return ""
+    n, m = (next(v for name, v in found.items() if name.startswith(of)) for of in ("n_", "m_"))
+    return f"{PORT}: a loss with speed^{n:.3g} and displacement^{m:.3g} is no port's, but of one group's flow"
 
 
 def outdone(laws: Sequence[Scored], cross: CrossFit, selection: Selection, closed: bool = False) -> str:

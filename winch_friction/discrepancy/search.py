@@ -136,7 +136,7 @@ def after_reversals(
 # -- the search
 @dataclass(frozen=True)
 class Study:
-    """What every step of one call shares: which runs are locked, the crane, what the user chose, the source of chance."""
+    """What every step of one call shares: the locked runs, the crane, what the user chose, the source of chance."""
 
     split: Split
     crane: Crane

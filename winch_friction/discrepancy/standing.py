@@ -12,15 +12,11 @@ from winch_friction.discrepancy.candidates.signals import within_load_cells
 from winch_friction.discrepancy.detectors import flow_balance
 from winch_friction.discrepancy.detectors import ripple as angle
 from winch_friction.discrepancy.engine.blocks import Slot
-from winch_friction.discrepancy.engine.crossfit import (
-    left_of_first_halves,
-    on_their_own,
-    same_columns,
-)
+from winch_friction.discrepancy.engine.crossfit import left_of_first_halves, on_their_own, same_columns
 from winch_friction.discrepancy.engine.selection import select, with_fewer
 from winch_friction.discrepancy.estimates import takes_little, within_a_sample, within_a_step
 from winch_friction.discrepancy.expansion import Given, Split, meet
-from winch_friction.discrepancy.outdone import one_law
+from winch_friction.discrepancy.outdone import no_port, one_law
 from winch_friction.discrepancy.proof import (
     Trial,
     at_the_floor,
@@ -36,6 +32,7 @@ from winch_friction.discrepancy.proof import (
     unproven,
     worse_runs,
 )
+from winch_friction.discrepancy.regressors import PORT
 from winch_friction.discrepancy.repair import Repair, draft, polished
 from winch_friction.discrepancy.run_states import EACH_RUN, SINCE, SOME_RUNS
 from winch_friction.discrepancy.search import Search, Study, decided, nameless, unexplained
@@ -149,6 +146,7 @@ def _stands(search: Search, refit: Trial, trial_of: _TrialOf, rng: np.random.Gen
         or leaves_most(full.train)
         or fits_only_its_own(full.train, full.holdout)
         or within_a_sample(full.repaired.parameters, full.holdout)
+        or (no_port(full.repaired.parameters) if PORT in search.explanation.names else "")
         or _may_be_none(slots, full, refit)
         or _chosen_not_whole(slots, full.holdout)
         or within_a_step(cross, fitted := [search.explanation, *(cross.explain((each,)) for each in rivals)], least)

@@ -1,7 +1,6 @@
 """Run files in and out by their kind: .csv, .parquet, or a rosbag2 folder (.mcap and .db3 files as well). And what of
 them nobody measured: the silence between records that were merged into one file, and samples of a channel that stands
-still while the others live, or jumps; for `gap` and `check` alike. A transmitter that hangs repeats its last value, and
-leaps when it wakes; a lost telegram is one sample of 0 or of full scale. They are made missing, and said.
+still while others live, or jumps: a transmitter or a bus that hangs, a lost telegram. They are made missing, and said.
 """
 
 import itertools
@@ -187,6 +186,7 @@ LEAST_ALIVE = 0.25  # of a record, that says how the channel lives; a coarse dig
 JUMPS = 20.0  # usual steps between samples, from the median of three
 ALONE = 3.0  # times the steps beside it: a winch that sticks and slips within some samples rises to its peaks and falls
 LEAPS, QUICK = 3.0, 99.0  # times a step of this percentile: those of the hardest ramps, hangs themselves are rarer
+_Spells = list[tuple[int, int]]
 MOST = 0.01  # of the samples; what jumps oftener is how the sensor is, and no lost telegram
 
 
@@ -235,7 +235,8 @@ def without_broken(runs: Sequence[Run]) -> tuple[list[Run], list[Broken]]:
 def _standing(time: FloatArray, values: FloatArray, changes: np.ndarray, others: Sequence[np.ndarray]) -> np.ndarray:
     """Samples (samples,) that repeat the one before for long, while another channel lives; none of a winch at rest."""
     still = np.zeros(len(values), bool)
-    long = [(a, b) for a, b in _long_spells(time, values, changes) if values[a] != 0.0]
+    living = [each for each in others if each.mean() >= LIVES]
+    long = [(a, b) for a, b in _long_spells(time, values, _leaps(values), changes, *living) if values[a] != 0.0]
     rest = np.ones(len(changes), bool)
     for a, b in long:
         rest[a : b - 1] = False
@@ -248,10 +249,9 @@ def _standing(time: FloatArray, values: FloatArray, changes: np.ndarray, others:
 
 
 def _hanging(time: FloatArray, values: FloatArray, changes: np.ndarray, others: Sequence[np.ndarray]) -> np.ndarray:
-    """Samples (samples,) of a speed that repeat the one before for long, while another channel lives, and from which it
-    leaps: a coarse one rests on its digits, and goes on from there by steps."""
+    """The same of a speed that leaps in the end: a coarse one rests on its digits, and goes on from there by steps."""
     still, leaps = np.zeros(len(values), bool), _leaps(values)
-    for a, b in _long_spells(time, values, changes):
+    for a, b in _long_spells(time, values, leaps[:0], changes):
         if b < len(values) and leaps[b - 1] and any(each[a : b - 1].mean() >= LIVES for each in others):
             still[a + 1 : b] = True
     return still
@@ -273,11 +273,13 @@ def _leaps(values: FloatArray) -> np.ndarray:
     return steps > LEAPS * float(np.percentile(moved, QUICK)) if len(moved) else np.zeros(len(steps), bool)
 
 
-def _long_spells(time: FloatArray, values: FloatArray, changes: np.ndarray) -> list[tuple[int, int]]:
-    """First sample and end of what is repeated to the last digit for long."""
-    ends = np.flatnonzero(np.concatenate([[True], changes | np.isnan(values[1:] + values[:-1]), [True]]))
-    spells = [(a, b) for a, b in itertools.pairwise(ends.tolist()) if b - a >= FEWEST]
-    return [(a, b) for a, b in spells if time[b - 1] - time[a] >= STILL]
+def _long_spells(time: FloatArray, values: FloatArray, leaps: np.ndarray, *changes: np.ndarray) -> _Spells:
+    """First sample and end of what is repeated to the last digit for long, until it leaps, or as another's."""
+    ends = (np.r_[True, each | np.isnan(values[1:] + values[:-1]), True] for each in changes)
+    own, *others = (list(itertools.pairwise(np.flatnonzero(each).tolist())) for each in ends)
+    as_one = {each for other in others for each in other}
+    spells = [(a, b) for a, b in own if b - a >= FEWEST]
+    return [(a, b) for a, b in spells if time[b - 1] - time[a] >= STILL or leaps[b - 1 : b].any() or (a, b) in as_one]
 
 
 def _jumping(values: FloatArray) -> np.ndarray:
@@ -293,7 +295,6 @@ def _jumping(values: FloatArray) -> np.ndarray:
 
 
 def _turning(speed: FloatArray) -> np.ndarray:
-    """Two samples (samples,) on either side of a reversal: in a sparse log what carries the winch steps there by twice
-    the friction, between two ramps, and stands out from both of its neighbours."""
+    """Two samples (samples,) on either side of a reversal: of a sparse log friction's step stands out alone there."""
     turns = np.concatenate([[False], np.sign(speed[:-1]) * np.sign(speed[1:]) < 0.0, [False]])
     return np.asarray(np.convolve(turns, np.ones(4), "same")[1:] > 0.5)

@@ -237,6 +237,7 @@ def without_memory(candidate: Candidate) -> bool:
 CLEAR = 3.0  # times the travel in which the instant of a reversal is uncertain, from where on travel is no timing
 BEYOND, MOVING_SPEED = 0.25, 1.0  # s and rad/s: a reversal is real where the shaft turns either way so long about it
 FULL_SPEED = 100.0  # rad/s, of motors for which speeds of laws are stated; one of large stroke turns at a tenth
+STEEPEST = 2.0  # exponent of a port's D beyond that of w: 1 of the torque, 1 of a passage that narrows with the stroke
 TURBULENT = 2.5  # exponent of a flow: 2, and what a valve adds that its own flow draws shut
 WIDEST = 0.5  # of the largest speed, for a curve that falls with it: a wider one is a constant
 
@@ -262,14 +263,12 @@ def hersey(values: Values, runs: Sequence[PreparedRun]) -> bool:
 
 
 def notch(values: Values, runs: Sequence[PreparedRun]) -> bool:
-    """A maximum over the speed that the runs have reached: below it a notch's loss only rises, as those of flow and of
-    power do."""
+    """A maximum over the speed that the runs have reached: below it a notch's loss only rises, as a flow's does."""
     return all(v < _top(runs) for name, v in values.items() if name.startswith("w_"))
 
 
 def blurred_travel(runs: Sequence[PreparedRun]) -> float:
-    """Travel of the shaft in rad within three samples of a reversal, median: shorter than that nothing is told from an
-    instant that is not known better; 0 without a reversal."""
+    """Median travel of the shaft, rad, within three samples of a reversal: of less nothing is told; 0 without one."""
     travels = []
     for run in runs:
         speed, look = run.speed, max(round(BEYOND / run.dt), 2)
@@ -290,7 +289,12 @@ def line(values: Values, _: Sequence[PreparedRun]) -> bool:
     return all(v <= TURBULENT for name, v in values.items() if name in ("n_l", "n_le"))
 
 
+def port(values: Values, _: Sequence[PreparedRun] = ()) -> bool:
+    """Oil through a port loses D (D w)^n; what is far steeper in D follows the flow of one group alone."""
+    return all(values[f"m_{law}"] <= values[f"n_{law}"] + STEEPEST for law in ("pp", "po") if f"m_{law}" in values)
+
+
 POSSIBLE: Mapping[str, Possible] = {
     "stribeck": stribeck, "viscosity_temperature": hersey, "notch_loss": notch, "presliding": presliding,
-    "line_pressure_drop": line,
+    "line_pressure_drop": line, "port_turbulence": port,
 }  # fmt: skip

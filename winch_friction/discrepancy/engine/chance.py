@@ -20,6 +20,7 @@ from winch_friction.discrepancy.engine.crossfit import (
     fitted,
     flip_p_values,
     heads,
+    in_order,
 )
 from winch_friction.discrepancy.thresholds import LIMITS
 
@@ -114,9 +115,9 @@ def rivals_of(
         taken = trial.slots[-1].name in {slot.name for _, slot in equal}
         if not taken and (alike if same else rival):
             equal.append((charged(without.loss, trial.loss, trial.slots[-1]), trial.slots[-1]))
-    equal.sort(key=lambda pair: pair[0])
     frequency = 1.0 if same else _frequency(current.losses, [t.losses for t in trials], rng)
-    return tuple(slot for _, slot in equal if slot is not own), frequency
+    order = in_order(cross, [loss for loss, _ in equal], [slot for _, slot in equal])
+    return tuple(equal[k][1] for k in order if equal[k][1] is not own), frequency
 
 
 def _closest(trials: Sequence[Explanation]) -> list[Explanation]:

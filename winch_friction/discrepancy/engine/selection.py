@@ -17,6 +17,7 @@ from winch_friction.discrepancy.engine.crossfit import (
     fitted,
     flip_p_values,
     heads,
+    in_order,
     other_start,
 )
 from winch_friction.discrepancy.thresholds import LIMITS
@@ -25,7 +26,6 @@ LEAST_GAIN = min(gain for gain, _ in LIMITS.significance)
 TAKEN = "taken"
 NO_BETTER = 1e-3  # of the held-out loss: a tenth of the least gain
 EXCHANGES = 3  # rounds over a set, of four effects at most: what still improves then goes in circles
-THE_SAME = 1e-5  # of the held-out loss: a thousand times its rounding; laws that are one over these runs
 
 
 @dataclass(frozen=True)
@@ -143,16 +143,10 @@ def _forward(
 
 
 def _in_order(cross: CrossFit, current: Explanation, trials: Sequence[Explanation]) -> list[int]:
-    """Trials from the least charged loss on; of those that come to the same the one that is listed first leads, which
-    is a cause's own law before its others: rounding is no reason for a name.
-    """
-    losses = [charged(current.loss, each.loss, each.slots[-1]) for each in trials]
-    listed = {id(slot): k for k, slot in enumerate(cross.problem.slots)}
-    first = [listed.get(id(each.slots[-1]), len(listed)) for each in trials]
-    order = sorted(range(len(trials)), key=lambda k: (losses[k], first[k]))
-    level = losses[order[0]] * (1.0 + THE_SAME)
-    ties = [k for k in order if losses[k] <= level]
-    return sorted(ties, key=lambda k: first[k]) + order[len(ties) :]
+    """Trials by the charged loss of what each adds to the current set."""
+    added = [each.slots[-1] for each in trials]
+    losses = [charged(current.loss, each.loss, own) for each, own in zip(trials, added, strict=True)]
+    return in_order(cross, losses, added)
 
 
 def _plain_together(cross: CrossFit, base: Explanation, rng: np.random.Generator) -> Explanation:

@@ -67,6 +67,7 @@ def test_it_is_asked_where_nothing_else_explains(monkeypatch, first, left_by_law
         apart=lambda runs: (runs, ()),
         long_enough=lambda runs: (runs, ()), of_records=lambda *_: [], of_prepared=lambda *_: [],
         of_swing=lambda *_: SimpleNamespace(met=True),
+        refuse=lambda *_: None, lock_holdout=lambda *_: SimpleNamespace(runs=runs, train=(), holdout=()),
     )  # fmt: skip
     monkeypatch.setattr(workflow, "adequacy", adequacy)
     monkeypatch.setattr(workflow, "completed", lambda model, crane: model)
@@ -74,7 +75,7 @@ def test_it_is_asked_where_nothing_else_explains(monkeypatch, first, left_by_law
     monkeypatch.setattr(next_experiment, "of_runs", lambda *_: [])
     monkeypatch.setattr(next_experiment, "levels_of", lambda *_: None)
     monkeypatch.setattr(workflow, "against_simulations", lambda runs, model, crane: list(runs))
-    monkeypatch.setattr(workflow, "lock_holdout", lambda *_: SimpleNamespace(runs=runs, train=(), holdout=()))
+    monkeypatch.setattr(workflow, "beside_climbs", lambda runs, crane: (runs, []))
     monkeypatch.setattr(workflow, "meet", lambda *_: None)
     searched = SimpleNamespace(verdict=SimpleNamespace(untold=False), flow=(), ripple=None)
     monkeypatch.setattr(workflow, "search_runs", lambda *_: searched)

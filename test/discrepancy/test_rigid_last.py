@@ -124,7 +124,7 @@ def surrounded(monkeypatch, met, told=True):
     adequacy = SimpleNamespace(
         apart=lambda runs: (runs, ()),
         long_enough=lambda runs: (runs, ()), of_records=lambda every, runs: [], of_prepared=lambda *_: [],
-        of_swing=lambda crane, left: check,
+        of_swing=lambda crane, left: check, refuse=lambda *_: None, lock_holdout=lambda runs, share, rng: split,
     )  # fmt: skip
     monkeypatch.setattr(workflow, "adequacy", adequacy)
     monkeypatch.setattr(workflow, "completed", lambda model, crane: model)
@@ -133,7 +133,7 @@ def surrounded(monkeypatch, met, told=True):
     monkeypatch.setattr(next_experiment, "levels_of", lambda *_: None)
     monkeypatch.setattr(workflow, "not_borne_out", lambda search, stands: [f"{search.kind} at first"])
     monkeypatch.setattr(workflow, "against_simulations", lambda runs, model, crane: list(runs))
-    monkeypatch.setattr(workflow, "lock_holdout", lambda runs, share, rng: split)
+    monkeypatch.setattr(workflow, "beside_climbs", lambda runs, crane: (runs, []))
     monkeypatch.setattr(workflow, "meet", lambda runs, crane, file, *_: met if file is None else RIGID)
     monkeypatch.setattr(workflow, "try_seed", lambda search, rng: SimpleNamespace(enough=False, refuted=None))
     monkeypatch.setattr(workflow, "assemble", lambda study, trial: Result(trial.search.kind))

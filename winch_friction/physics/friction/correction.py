@@ -16,10 +16,9 @@ THERMAL_REFERENCE = 40.0  # degC, where thermal errors are zero: the oil of the 
 class Correction:
     """One correction of a model, SI: the error's value, its standard deviation (None: unknown), bounds and source.
 
-    `groups` and `layers` restrict it (empty: all); `time_constant` s for those that fade or fill up; `during` the
-    windows of absolute time, s from and to, in which it was there (empty: always; `inf`: since then) or, one window, in
-    which it grew; `beyond` where a bend begins, or an S ends, in its channel's SI unit. Bounds not given are the
-    declared ones.
+    `groups` and `layers` restrict it (empty: all); `time_constant` s of those that fade or fill; `during` the windows
+    of absolute time, s from and to, in which it was there (empty: always; `inf`: since then) or, one window, in which
+    it grew; `beyond` where a bend begins, or an S ends, in its channel's SI unit. Bounds not given: the declared ones.
     Raises `InputError` for a value, bounds or ties that the declaration does not allow.
     """
 
@@ -53,10 +52,7 @@ class Correction:
         if self.time_constant is not None and not 0.0 < self.time_constant < float("inf"):
             raise InputError(f"correction '{self.name}': time_constant must be above 0 s, found {self.time_constant:g}")
         if self.time_constant is not None and own.late and max(map(abs, self.bounds)) >= self.time_constant:
-            raise InputError(
-                f"correction '{self.name}': its time_constant must be above its bounds, {self.lower:g} ... "
-                f"{self.upper:g} s, found {self.time_constant:g} s"
-            )
+            raise InputError(f"correction '{self.name}': time_constant must be above its bounds, or they within it")
         if bool(own.bends_in) != (self.beyond is not None):
             needs = f"needs beyond, in {own.bends_in}" if own.bends_in else "has no beyond"
             raise InputError(f"correction '{self.name}' {needs}")

@@ -37,6 +37,7 @@ from winch_friction.physics.friction.declared_correction import DECLARED
 AROUND = (1.0, 0.7, 0.85, 1.15, 1.3)  # times the first estimate, which a law that is inexact by a quarter gives
 COARSELY = (1.0, 0.8, 1.25)  # the same of one that changes within a run, and of a filter
 FILTERED = (1.0, 0.5)  # shares of what is late that a filter of first order makes, alone or behind a scan or a bus
+ALIKE = 0.002  # s, by which first estimates may differ that begin the same: a twentieth of the steps around them
 REACH = 1.1  # times a delay: half way to the next one
 BY = {
     FILLS_IN: (" by a buffer", " when full, every {:.3g} s"),
@@ -60,12 +61,15 @@ def without_delay(
     names `train` tell. What starts, stops or swings within tenths of a second comes out of a filter smaller too, which
     no delay makes; of a wave it delays all alike."""
     half = 0.5 * float(np.median([run.time[-1] for run in given.prepared]))  # s, when one that grows is its mean
-    late, size = suspect.origin[1].values["late"], _size(suspect, cross, fitted, half)
+    late, size = suspect.origin[1].values["late"], ALIKE * round(_size(suspect, cross, fitted, half) / ALIKE)
     own = [run for run in given.prepared if run.name in train]
     changing = given.once(("a delay that changes", size, train), lambda: _changing(own, size))
-    ways = _ways(size, late, half) + ([changing] if changing else [])
-    columns = given.once(("without a delay", size, half, late, train), lambda: _gaps_without(given, ways))
-    shapes = [each for way in ways for each in way]
+    ways = _ways(size, late, half)
+    columns = dict(given.once(("without a delay", size, half, late), lambda: _gaps_without(given, ways)))
+    if changing:
+        key = "without a delay that changes", size, train
+        columns.update(given.once(key, lambda: _gaps_without(given, [changing])))
+    shapes = [each for way in (*ways, changing) for each in way]
     return [
         replace(each, columns=partial(_columns, each, columns), shapes=partial(_shapes, each, shapes))
         if each.name == DELAY and not each.law_name

@@ -5,6 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from winch_friction.discrepancy.candidates.candidate import Values
 from winch_friction.discrepancy.candidates.signals import (
     DELAY,
     DRAINS_IN,
@@ -69,8 +70,7 @@ def course_of(runs: Sequence[PreparedRun], size: float) -> Course:
     """
     durations = np.minimum([run.time[-1] for run in runs], LOOKED_AT)
     behind = {"ahead": max(size, 0.0), "behind": max(-size, 0.0), "late": SPEED if size > 0.0 else PRESSURES}
-    parts = [_binned(run, delay_columns(run, behind)[:, 0]) for run in runs]
-    time, along, square = (np.concatenate(each) for each in zip(*parts, strict=True))
+    time, along, square = _binned(runs, behind)
 
     def told(share: FloatArray) -> float:
         return max(float(np.sign(size) * (share @ along)), 0.0) ** 2 / max(float(share**2 @ square), EMPTY)
@@ -97,14 +97,16 @@ def _share(how: str, since: FloatArray, over: float) -> FloatArray:
     return left if how == DRAINS_IN else 1.0 - left
 
 
-def _binned(run: PreparedRun, column: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Of a run's beginning, in bins of time: their middle in s, and the sums that a fit of the gap by this column
-    takes."""
-    own = run.used & (run.time < LOOKED_AT)
-    at = np.floor(run.time[own] / BIN).astype(int)
-
-    def summed(other: FloatArray) -> FloatArray:
-        return np.bincount(at, column[own] * other[own]).astype(float)
-
-    along, square = summed(run.gap), summed(column)
+def _binned(runs: Sequence[PreparedRun], behind: Values) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Of the beginning of all these runs, in bins of the time since then: their middle in s, and the sums that a fit of
+    the gap by a delay of these values takes."""
+    time, gap, column = (
+        np.concatenate(each)
+        for each in zip(
+            *((r.time[r.used], r.gap[r.used], delay_columns(r, behind)[r.used, 0]) for r in runs), strict=True
+        )
+    )
+    own = time < LOOKED_AT
+    at, column = np.floor(time[own] / BIN).astype(int), column[own]
+    along, square = (np.bincount(at, column * other).astype(float) for other in (gap[own], column))
     return (np.arange(len(along), dtype=float) + 0.5) * BIN, along, square

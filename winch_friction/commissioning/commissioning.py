@@ -15,7 +15,7 @@ from winch_friction.commissioning.summaries import ChannelSummary, channel_findi
 from winch_friction.commissioning.view import views_of
 from winch_friction.physics.errors import counted
 from winch_friction.physics.friction import FrictionModel
-from winch_friction.physics.signals import WORTH_SAYING, Run, layer_changes, lost_to_layers
+from winch_friction.physics.signals import WORTH_SAYING, Run, layer_changes
 from winch_friction.physics.winch.crane import Crane
 from winch_friction.records.runs import apart, scattered, without_broken
 
@@ -162,7 +162,6 @@ def _of_changing_layers(run: Run, crane: Crane) -> Iterator[Finding]:
     """A `wire_layer` around whose changes `gap` uses nothing; one that flips took whole runs away without a word."""
     found = layer_changes(run, crane.gear_ratio, crane.speed_scale)
     if found.near >= WORTH_SAYING:
-        said = lost_to_layers(run, crane.gear_ratio, crane.speed_scale)
         severity = "warning" if found.changes > found.most else "note"
         evidence = {"changes": found.changes, "share": found.near}
-        yield Finding(severity, "layer_changes", said, "wire_layer", (run.name,), evidence)
+        yield Finding(severity, "layer_changes", found.lost(run.name), "wire_layer", (run.name,), evidence)

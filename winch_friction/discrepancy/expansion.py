@@ -165,7 +165,7 @@ def with_corrections(
     """Prepared runs; those of these names with what each of the model's corrections would change in their gap, by small
     steps of it."""
     columns: list[list[FloatArray]] = [[] for _ in prepared]
-    for k, one in enumerate(model.corrections):
+    for k, one in enumerate(model.corrections if names else ()):
         step, moved = _moved(one)
         others = (*model.corrections[:k], moved, *model.corrections[k + 1 :])
         right, own_crane = _corrected(runs, crane, replace(model, corrections=others))

@@ -236,6 +236,16 @@ class LayerChanges(NamedTuple):
     near: float = 0.0
     most: int = 0
 
+    def lost(self, name: str) -> str:
+        """In words, what the run of this name loses by them, and whether it can change so often."""
+        often, flips = counted(self.changes, "time", "times"), ""
+        if self.changes > self.most:
+            flips = f", where the winch can pass such a place {self.most} times: a counter that flips?"
+        return (
+            f"{name}: wire_layer changes {often}{flips}; "
+            f"{self.near:.0%} of the samples lie within half a turn of the drum of a change, and tell gap nothing"
+        )
+
 
 def layer_changes(run: Run, gear_ratio: float, speed_scale: float) -> LayerChanges:
     """What the changes of `wire_layer` of a run say beside its `motor_speed`; zeros without a change."""
@@ -252,17 +262,3 @@ def layer_changes(run: Run, gear_ratio: float, speed_scale: float) -> LayerChang
     moving = np.sign(speed[np.abs(speed) > MOVING * speed_scale])
     turns = int(np.count_nonzero(np.diff(moving)))
     return LayerChanges(len(changed), near, (turns + 1) * int(np.ptp(layer)))
-
-
-def lost_to_layers(run: Run, gear_ratio: float, speed_scale: float) -> str:
-    """In words, what a run loses by the changes of its `wire_layer`, and whether it can change so often; '' nothing."""
-    found = layer_changes(run, gear_ratio, speed_scale)
-    if not found.changes:
-        return ""
-    often, flips = counted(found.changes, "time", "times"), ""
-    if found.changes > found.most:
-        flips = f", where the winch can pass such a place {found.most} times: a counter that flips?"
-    return (
-        f"{run.name}: wire_layer changes {often}{flips}; "
-        f"{found.near:.0%} of the samples lie within half a turn of the drum of a change, and tell gap nothing"
-    )

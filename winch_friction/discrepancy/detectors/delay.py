@@ -10,7 +10,7 @@ from functools import partial
 
 import numpy as np
 
-from winch_friction.discrepancy.candidates.candidate import Candidate, Shape, Values
+from winch_friction.discrepancy.candidates.candidate import Candidate, ParameterEstimate, Shape, Values, correction
 from winch_friction.discrepancy.candidates.signals import (
     CLOCKED,
     DELAY,
@@ -31,8 +31,6 @@ from winch_friction.discrepancy.engine.crossfit import CrossFit, Explanation
 from winch_friction.discrepancy.expansion import Given, meet, met_in_turn
 from winch_friction.discrepancy.preparation.prepare import PreparedRun
 from winch_friction.physics.friction import FrictionModel
-from winch_friction.physics.friction.correction import Correction
-from winch_friction.physics.friction.declared_correction import DECLARED
 
 AROUND = (1.0, 0.7, 0.85, 1.15, 1.3)  # times the first estimate, which a law that is inexact by a quarter gives
 COARSELY = (1.0, 0.8, 1.25)  # the same of one that changes within a run, and of a filter
@@ -150,17 +148,9 @@ def _shape(delay: float, late: float, **how: float) -> Shape:
 
 def _without(shape: Shape, model: FrictionModel) -> FrictionModel:
     """The model that takes this out of the signals; what it has itself is out of these runs."""
-    values = shape.values
-    found = [
-        Correction(name, float(np.clip(values["delay"] * share, *_bounds(name))), **late_over(name, values))
-        for name, share in late_by(values).items()
-    ]
+    delay, values = ParameterEstimate(shape.values["delay"], 0.0, "s"), shape.values
+    found = [correction(name, delay, share, **late_over(name, values)) for name, share in late_by(values).items()]
     return replace(model, corrections=tuple(found))
-
-
-def _bounds(name: str) -> tuple[float, float]:
-    declared = DECLARED[name].parameter
-    return declared.lower, declared.upper
 
 
 def _key(run: PreparedRun, values: Values) -> Key:

@@ -14,7 +14,7 @@ from scipy.ndimage import convolve1d, maximum_filter1d, median_filter
 
 from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.physics.errors import InputError
-from winch_friction.physics.signals import WORTH_SAYING, FloatArray, Run, layer_changes, lost_to_layers
+from winch_friction.physics.signals import WORTH_SAYING, FloatArray, Run, layer_changes
 from winch_friction.physics.winch import Crane
 
 MIN_SAMPLES = 10  # below it not even a speed can be smoothed
@@ -141,14 +141,14 @@ def beside_climbs(runs: Sequence[Run], crane: Crane) -> tuple[list[Run], list[st
     of those that lose much or all to them."""
     kept, notes = [], []
     for run in runs:
-        near = layer_changes(run, crane.gear_ratio, crane.speed_scale).near
-        left = (1.0 - near) * float(run.time[-1] - run.time[0])  # s
-        if near < WORTH_SAYING:
+        found = layer_changes(run, crane.gear_ratio, crane.speed_scale)
+        left = (1.0 - found.near) * float(run.time[-1] - run.time[0])  # s
+        if found.near < WORTH_SAYING:
             kept.append(run)
         elif left < LIMITS.shortest_record:
-            notes.append(f"{lost_to_layers(run, crane.gear_ratio, crane.speed_scale)}; left out")
+            notes.append(f"{found.lost(run.name)}; left out")
         else:
-            notes.append(lost_to_layers(run, crane.gear_ratio, crane.speed_scale))
+            notes.append(found.lost(run.name))
             kept.append(run)
     return kept, notes
 

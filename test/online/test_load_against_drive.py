@@ -8,7 +8,7 @@ from sea import CRANE, SEED, TOPICS
 
 from winch_friction.online.agreement import Agreement
 from winch_friction.online.compensator import CompensatorService
-from winch_friction.online.doubt import LEAST_KNOWN
+from winch_friction.online.doubt import COMPARED, LEAST_KNOWN, LoadAgainstDrive
 from winch_friction.physics.channels import GRAVITY
 from winch_friction.physics.signals import GroupSample, Sample
 from winch_friction.physics.winch.crane import Drive
@@ -106,6 +106,15 @@ def test_a_load_that_is_picked_up_or_set_down_is_none_that_jumps(load):
             shown = load if time >= AT else 55e3
             found.update(agreement.contradictions(replace(sample, hook_load=shown), time))
         assert not found
+
+
+def test_what_does_not_jump_keeps_what_is_remembered_of_some_waves():
+    """A mean over half a wave each way doubts what friction, inertia and noise do within one."""
+    watch = LoadAgainstDrive(CRANE, ChannelRanges(CRANE, TOPICS.groups))
+    for k in range(round(80.0 / PERIOD)):
+        assert watch.contradiction(at_work(k * PERIOD, 55e3, 300.0), PERIOD) == ""
+        if k * PERIOD > 40.0:
+            assert min(watch._hoisting.known, watch._lowering.known) > COMPARED
 
 
 def test_spikes_do_not_keep_a_cell_from_being_doubted():

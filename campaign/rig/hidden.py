@@ -63,6 +63,7 @@ class Hidden(NamedTuple):
     line_power: float = 2.0  # exponent of the flow
     line_side: float = 0.0  # 1: when hoisting alone
     line_from: float = 0.0  # share of that flow from which on anything is lost
+    line_of: float = 0.0  # 0: of every group, 1: of those that drive beside passive ones, -1: of passive ones
     case: float = 0.0  # N m / Pa per motor
     case_b: float = 0.0  # N m / Pa per motor, of the pressure at port B alone
     case_rest: float = 0.0  # N m / Pa per motor, of both ports, at zero displacement

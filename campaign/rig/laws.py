@@ -62,6 +62,14 @@ def _line(power: float, side: float = 0.0) -> Draw:
     return lambda s, rng, f: {"line_drop": 4 * BAR / (1.29 / 60) ** 2 * s, "line_power": power, "line_side": side}
 
 
+def _own_line(power: float, whose: float, motors: int, **more: float) -> Draw:
+    """Of one side's motors alone, as much at their own flow as all motors' line loses at that of all."""
+    flow = 1.29 / 60 * motors / 11
+    return lambda s, rng, f: {
+        "line_drop": 4 * BAR / flow**2 * s, "line_flow": flow, "line_power": power, "line_of": whose, **more,
+    }  # fmt: skip
+
+
 def _leak(power: float, cold: float, **more: float) -> Draw:
     return lambda s, rng, f: {
         "leakage": 50 * RPM * 11 * MAX_DISPLACEMENT / (150 * BAR) * s, "leakage_power": power, "leakage_cold": cold,
@@ -157,7 +165,9 @@ OTHER: dict[str, tuple[Law, ...]] = {
     "line_pressure_drop": (
         Law("blasius", _line(1.75)), Law("check_valve", _line(2.0, 1.0)),
         Law("cracking_valve", _line(0.15, 1.0)),
+        Law("driving_side", _own_line(1.75, 1.0, 3)), Law("passive_side", _own_line(2.0, -1.0, 8)),
         Law("opens_late", lambda s, rng, f: {**_line(2.0)(s, rng, f), "line_from": 0.35}, held_out=True),
+        Law("driving_side_opens_late", _own_line(2.0, 1.0, 3, line_from=0.5), held_out=True),
     ),
     "case_pressure": (
         Law("port_b", _set(case_b=40 * BAR * MAX_DISPLACEMENT / (150 * BAR))),

@@ -142,9 +142,10 @@ def drifted(h, date):
 
 
 @njit(cache=True)
-def line_drop(h, flow):
-    """Pressure lost between transducer and motor, Pa."""
-    if h.line_drop == 0.0 or h.line_side * flow < 0.0:
+def line_drop(h, flow, role):
+    """Pressure lost between transducer and motor, Pa; `role` is 1 of motors that drive beside passive ones, -1 of
+    those, 0 of motors alone."""
+    if h.line_drop == 0.0 or h.line_side * flow < 0.0 or (h.line_of != 0.0 and h.line_of != role):
         return 0.0
     if h.line_from > 0.0:
         beyond = max(abs(flow) - h.line_from * h.line_flow, 0.0)

@@ -71,9 +71,9 @@ def simulate(f, h, r, reference, heave, heave_acceleration, celsius, viscosity, 
         visc = thick**h.viscosity_power
         # the line's loss lies between transducer and motor, so the motor gets less when it drives the load
         motor_flow = active * speed
-        line_motor = line_drop(h, motor_flow)
+        line_motor = line_drop(h, motor_flow, 1.0 if r.passive_motors > 0 else 0.0)
         dp_motor = dp - line_motor
-        dp_passive = gas - r.boost - line_drop(h, passive * speed)
+        dp_passive = gas - r.boost - line_drop(h, passive * speed, -1.0)
         wire_out = r.wire_out - angle * r.radius / r.gear
         loss = r.drive_motors * motor_loss(f, h, r, w, abs(dp_motor), p_b, p_a + p_b, r.drive_displacement, visc, drift)
         if r.passive_motors > 0:

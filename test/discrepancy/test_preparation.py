@@ -232,6 +232,8 @@ def test_where_port_b_is_the_higher_the_operating_point_has_its_pressure(crane_1
     for run in prepared:
         for k, group in enumerate(run.groups):
             start = len(WINCH_SIGNALS) + k * len(names)
+            role = (1.0 if group.balances else -1.0) if len(run.groups) > 1 else 0.0
+            assert np.all(run.point[start + names.index("role")] == role)
             at = dict(zip(names, run.point[start : start + len(names)], strict=True))
             port_b = 0.5 * (at["pressure_sum"] - at["higher_port"] * at["pressure"])
             np.testing.assert_allclose(port_b, 0.5 * (group.pressure_sum - group.pressure), rtol=1e-9)

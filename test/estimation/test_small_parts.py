@@ -548,7 +548,7 @@ def considering(**std):
     return SensorErrors(CRANE, SEED, EstimatorConfig(**{f"{name}_std": std.get(name, 0.0) for name in names}))
 
 
-WEIGHTS = {"count": 0.0, "pressure": 3e-7, "pressure_sum": 5e-7, "displacement": 2e6, "higher_port": 9.0}
+WEIGHTS = {"count": 0.0, "pressure": 3e-7, "pressure_sum": 5e-7, "displacement": 2e6, "higher_port": 9.0, "role": 4.0}
 
 
 def reading(weights=WEIGHTS):
@@ -575,7 +575,7 @@ def test_a_gain_of_the_pressures_is_one_of_their_sums_as_well_and_one_of_the_str
 @pytest.mark.parametrize(("port_a", "port_b", "slope"), [(150e5, 25e5, 1.0), (25e5, 150e5, -1.0)])
 def test_an_offset_is_a_constant_torque_of_the_driving_group_and_less_of_its_pressure(port_a, port_b, slope):
     """Where port B is the higher one the drop grows by what port A shows too much."""
-    both, point, at = reading({**WEIGHTS, "pressure_sum": 0.0, "higher_port": 0.0})
+    both, point, at = reading({**WEIGHTS, "pressure_sum": 0.0, "higher_port": 0.0, "role": 0.0})
     both.groups["active"].pressure_a, both.groups["active"].pressure_b = port_a, port_b
     point = sample_operating_point(both, CRANE, drum_torque=0.0, speed=50.0)
     (found,) = considering(pressure_offset=1e5).by(both, 700.0, 40.0, point, at(point), at)

@@ -171,8 +171,8 @@ def test_a_signal_that_is_not_given_has_its_usual_value():
     known = {each.name: each.default for each in SIGNAL_OF_SYMBOL.values() if each.default is not None}
     assert known == {
         "acceleration": 0.0, "oil_temperature": 40.0, "time": 0.0, "shaft_angle": 0.0, "wire_layer": 1.0,
-        "wire_out": 0.0, "pressure_sum": 0.0, "higher_port": 1.0, "max_displacement": 0.0, "density": 870.0,
-        "viscosity": 0.04, "gear_ratio": 1.0,
+        "wire_out": 0.0, "pressure_sum": 0.0, "higher_port": 1.0, "role": 0.0, "max_displacement": 0.0,
+        "density": 870.0, "viscosity": 0.04, "gear_ratio": 1.0,
     }  # fmt: skip
     within = {each.name: each.limits for each in CONSTANTS}
     assert within == {
@@ -185,5 +185,6 @@ def test_a_signal_that_is_not_given_has_its_usual_value():
 def test_a_groups_point_has_the_size_of_its_drop_and_the_port_that_is_higher(drop, size, port):
     for given in (drop, np.full(2, drop)):
         told = group_point(3, given, 2e-5)
-        assert [float(np.ravel(each)[0]) for each in told] == [3.0, size, size, 2e-5, port]
+        assert [float(np.ravel(each)[0]) for each in told] == [3.0, size, size, 2e-5, port, 0.0]
+        assert np.all(group_point(3, given, 2e-5, role=-1.0)[5] == -1.0)
         assert float(np.ravel(group_point(3, given, 2e-5, 9e6)[2])[0]) == 9e6

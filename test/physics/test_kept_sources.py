@@ -17,7 +17,7 @@ PARTS = ("scalar_torque", "scalar_torque_and_gradient", "scalar_contributions", 
 LENGTH = len(layout(2))  # of an operating point with two groups
 CONSTANTS = (("density", 870.0), ("gear_ratio", 20.0), ("max_displacement", 3e-5), ("viscosity", 0.04))
 POINT = [0.9, 60.0, 54.0, 5e5, 0.3, 41.0, 12.0, 700.0, 2.0, 50.0, 11.0,
-         6, 1e7, 2e7, 3e-5, 1.0, 5, 1.5e7, 2e7, 2e-5, -1.0]  # fmt: skip
+         6, 1e7, 2e7, 3e-5, 1.0, 1.0, 5, 1.5e7, 2e7, 2e-5, -1.0, -1.0]  # fmt: skip
 
 
 @pytest.fixture

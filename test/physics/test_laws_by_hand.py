@@ -20,14 +20,14 @@ HOISTING = {
     "direction": 1.0, "speed_magnitude": 120.0, "speed": 120.0, "drum_torque": 8e5, "acceleration": 7.0,
     "oil_temperature": 25.0, "time": 2.1e6, "shaft_angle": 1000.3, "wire_layer": 3.0, "wire_out": 80.0,
     "motor_total": 11.0, "count": 3.0, "pressure": 250e5, "pressure_sum": 310e5, "displacement": 2.0e-5,
-    "higher_port": 1.0, "max_displacement": 3.42e-5, "density": 880.0, "viscosity": 0.05, "gear_ratio": 250.0,
+    "higher_port": 1.0, "role": 1.0, "max_displacement": 3.42e-5, "density": 880.0, "viscosity": 0.05, "gear_ratio": 250.0,
 }  # fmt: skip
 LOWERING = HOISTING | {
     "direction": -1.0, "speed_magnitude": 15.0, "speed": -15.0, "drum_torque": 3.1e5, "oil_temperature": 55.0,
     "time": 7e5, "shaft_angle": -37.0, "wire_layer": 5.0, "pressure": 165e5, "pressure_sum": 190e5,
-    "displacement": 3.0e-5, "higher_port": -1.0,
+    "displacement": 3.0e-5, "higher_port": -1.0, "role": -1.0,
 }  # fmt: skip
-EARLY = LOWERING | {"time": 3e4, "drum_torque": 9e4, "pressure": 90e5, "pressure_sum": 120e5, "speed_magnitude": 0.2,
+EARLY = LOWERING | {"time": 3e4, "role": 0.0, "drum_torque": 9e4, "pressure": 90e5, "pressure_sum": 120e5, "speed_magnitude": 0.2,
                     "speed": -0.2}  # fmt: skip
 POINTS = {"hoisting": HOISTING, "lowering": LOWERING, "early and light": EARLY}
 # what the laws name besides, with its unit: 2000 and 400 rpm, 200 bar, a flow, a load, a speed of rest, a travel
@@ -38,7 +38,7 @@ NAMED = {
 SHORT = {
     "s": "direction", "w": "speed_magnitude", "T": "drum_torque", "oil": "oil_temperature", "t": "time",
     "phi": "shaft_angle", "layer": "wire_layer", "N": "motor_total", "n": "count", "p": "pressure",
-    "both": "pressure_sum", "D": "displacement", "port": "higher_port", "X": "max_displacement", "rho": "density",
+    "both": "pressure_sum", "D": "displacement", "port": "higher_port", "role": "role", "X": "max_displacement", "rho": "density",
     "mu": "viscosity", "i": "gear_ratio",
 }  # fmt: skip
 TYPICAL_TIMES = (1.1, 1.3, 0.9, 1.2, 0.8, 1.15, 0.7)  # so that no two parameters have the same value
@@ -61,6 +61,11 @@ def vogel(celsius, reference, steepness=826.0):
 
 def way(q, up, down):
     return up if q.s > 0.0 else down
+
+
+def line_of(side, q, v):
+    lost = way(q, v[f"p_{side}_hoisting"], v[f"p_{side}_lowering"])
+    return lost * (q.n * q.D * q.w / q.flow) ** v[f"n_{side}"] * q.D
 
 
 def since(q, begin, lag):
@@ -152,6 +157,9 @@ PER_MOTOR = {
     "line_each_motor": lambda q, v: (
         v["p_le"] * (q.D / q.X * q.w / q.fast) ** v["n_le"] * q.D * way(q, 1.0 + v["b_le"], 1.0 - v["b_le"])
     ),
+    "line_driving": lambda q, v: 0.0 if q.role < 0.0 else line_of("driving", q, v),
+    "line_beside": lambda q, v: line_of("beside", q, v) if q.role > 0.0 else 0.0,
+    "line_passive": lambda q, v: line_of("passive", q, v) if q.role < 0.0 else 0.0,
     "case_high_port": lambda q, v: v["c_hi"] * (q.both + q.p) / 2.0,
     "case_ports": lambda q, v: v["K_pA"] * (q.both + q.p * q.port) / 2.0 + v["K_pB"] * (q.both - q.p * q.port) / 2.0,
 }
@@ -353,7 +361,10 @@ def test_a_typical_loss_of_a_large_winch_is_neither_nothing_nor_more_than_it_has
     for name, term in TERMS.items():
         typical = {p.name: p.typical for p in term.parameters}
         slow, fast = (HOISTING | {"speed_magnitude": w, "displacement": d} for w, d in ((20.0, 2e-5), (209.0, 3e-5)))
-        most = max(abs(by_hand(name, at | {"pressure": p}, typical)) for at in (slow, fast) for p in (150e5, 250e5))
+        own = {"role": -1.0 if name == "line_passive" else 1.0}
+        most = max(
+            abs(by_hand(name, at | own | {"pressure": p}, typical)) for at in (slow, fast) for p in (150e5, 250e5)
+        )
         assert 0.5 < most < 1500.0, (name, most)
 
 
@@ -393,6 +404,7 @@ def test_a_memory_starts_from_nothing(name):
 FLUID = {
     "line_pressure_drop", "viscosity_temperature", "viscosity_reference", "viscosity_vogel", "viscosity_exponential",
     "viscosity_hersey", "viscosity_each_way", "line_pressure_power", "line_laminar", "line_each_motor",
+    "line_driving", "line_beside", "line_passive",
 }  # fmt: skip
 
 

@@ -61,13 +61,14 @@ def test_a_loss_with_one_port_has_no_step_where_the_pressures_are_equal(ports):
 def test_port_a_is_the_higher_where_nobody_says():
     common = {"direction": 1.0, "speed": SPEED, "drum_torque": 0.0, "motor_total": 3}
     four = (3, 95e5, 145e5, 3e-5)
-    assert operating_point(**common, groups=[four, four]) == operating_point(**common, groups=[(*four, 1.0)] * 2)
-    for group in (four[:3], (*four, 1.0, 1.0)):
+    assert operating_point(**common, groups=[four, four]) == operating_point(**common, groups=[(*four, 1.0, 0.0)] * 2)
+    for group in (four[:3], (*four, 1.0, 1.0, 1.0)):
         with pytest.raises(TypeError, match=f"not {len(group)} values"):
             operating_point(**common, groups=[group])
 
 
-POWERS = ("port_turbulence", "port_power", "port_one_way", "mj5_port_flow", "line_pressure_power", "line_each_motor")
+POWERS = ("port_turbulence", "port_power", "port_one_way", "mj5_port_flow", "line_pressure_power", "line_each_motor",
+          "line_beside")  # fmt: skip
 
 
 @pytest.mark.parametrize("name", POWERS)

@@ -311,7 +311,7 @@ def test_a_window_is_one_behind_its_begin_up_to_its_end():
 )  # fmt: skip
 def test_what_multiplies_a_curve_is_of_one_motor_of_its_group(factor, value, unit):
     assert FACTORS[factor][1] == unit
-    assert "higher_port" not in FACTORS
+    assert not {"higher_port", "role"} & set(FACTORS)
     table = Table("t", (("pressure", (0.0, 1e7)),), times=(factor,), scope=Scope.MOTOR)
     model = FrictionModel("m", (tabulated(table),), (2.0, 0.0), constants={"max_displacement": 3e-5})
     point = _point(p=5e6, D=2e-5, w=30.0)

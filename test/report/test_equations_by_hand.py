@@ -47,7 +47,7 @@ def rows(html):
         ("acceleration", "ω̇"), ("oil_temperature", "ϑ"), ("shaft_angle", "φ"), ("wire_layer", "layer"),
         ("wire_out", "L"), ("motor_total", "N"), ("count", "n"), ("pressure", "Δp"), ("pressure_sum", "Σp"),
         ("displacement", "D"), ("max_displacement", "D_max"), ("density", "ρ"), ("viscosity", "μ"), ("gear_ratio", "i"),
-        ("higher_port", "sgn(p_A - p_B)"),
+        ("higher_port", "sgn(p_A - p_B)"), ("role", "role"),
     ],
 )  # fmt: skip
 def test_a_signal_is_written_as_people_write_it(name, symbol):

@@ -207,3 +207,4 @@ def test_a_pressure_that_pushes_the_other_way_is_as_large_and_acts_at_the_other_
     there, back = point(80e5), point(-80e5)
     assert there.pressure_driven == back.pressure_driven == 80e5
     assert (there.higher_port_driven, back.higher_port_driven) == (1.0, -1.0)
+    assert (there.role_driven, there.role_passive) == (1.0, -1.0)

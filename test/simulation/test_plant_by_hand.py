@@ -315,6 +315,20 @@ def test_the_sum_of_a_loops_pressures_has_the_boost_on_both_sides(secondary, dp,
     assert (x.pressure_passive, x.pressure_sum_passive, x.higher_port_passive) == (200e5, 300e5, -1.0)
     assert (x.speed, x.speed_magnitude, x.time, x.wire_out) == (-7.0, 7.0, 1e9 + 2.0, 52.0)
     assert (x.motor_total, x.count_driven, x.count_passive) == (11.0, 3.0, 8.0)
+    assert (x.role_driven, x.role_passive) == (1.0, -1.0)
+    alone = plain(equations.operating_point)(
+        of(secondary=secondary, start_time=1e9, layer=3.0, wire_out=50.0, passive_count=0),
+        state,
+        -1.0,
+        0.5,
+        2.0,
+        9e3,
+        40.0,
+        dp,
+        0.0,
+        0.0,
+    )
+    assert (alone.role_driven, alone.count_passive) == (0.0, 0.0)
     assert (x.displacement_driven, x.displacement_passive, x.drum_torque) == (3e-5, 1e-5, 9e3)
 
 

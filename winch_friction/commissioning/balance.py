@@ -19,6 +19,7 @@ from winch_friction.physics.channels import GRAVITY
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.friction.compiled import group_point, operating_point
 from winch_friction.physics.signals import FloatArray
+from winch_friction.physics.winch import group_roles
 
 EFFECTIVE = 40.0  # samples that a run counts for: neighbouring blocks repeat each other
 # ordinary errors, 1 sigma
@@ -179,8 +180,9 @@ def friction_point(view: RunView) -> tuple[Any, ...]:
             np.clip(g.drop, -MOST_PRESSURE, MOST_PRESSURE),
             np.clip(g.displacement, 0.0, view.max_displacement),
             np.clip(g.pressure_sum, 0.0, 2.0 * MOST_PRESSURE),
+            role,
         )
-        for g in view.groups.values()
+        for g, role in zip(view.groups.values(), group_roles(tuple(view.groups)), strict=True)
     ]
     speed = np.clip(view.speed, -MOST_SPEED, MOST_SPEED)
     drum = np.clip(np.nan_to_num(static_torque(view)), -view.rated_torque, view.rated_torque) * view.gear_ratio

@@ -16,7 +16,7 @@ from winch_friction.physics.errors import InputError
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.friction.term import needed
 from winch_friction.physics.signals import FloatArray, Run
-from winch_friction.physics.winch import Crane, group_point, operating_point
+from winch_friction.physics.winch import Crane, group_point, group_roles, operating_point
 from winch_friction.physics.winch.crane import held, run_drum_torque, run_rope_radius
 from winch_friction.physics.winch.operating_point import CHANNEL_SIGNALS, LEAST_DISPLACEMENT, TELLING_STROKE
 
@@ -225,8 +225,9 @@ def _points(
             np.full(len(run), float(crane.motor_count(name))), p,
             np.maximum(run[f"{name}.displacement"], LEAST_DISPLACEMENT),
             np.abs(p) + 2.0 * lower[name],
+            role,
         )
-        for name, p in drop.items()
+        for (name, p), role in zip(drop.items(), group_roles(tuple(drop)), strict=True)
     ]  # fmt: skip
     outer = np.full(len(run), float(len(crane.drum.layer_radii)))
     shown = {name: held(run[name]) for name in CHANNEL_SIGNALS if name in run}

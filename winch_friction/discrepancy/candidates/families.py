@@ -81,6 +81,7 @@ def literature() -> list[Candidate]:
         line("line_pressure_power", {"n_l": (0.25,), "b_l": (-1.0, 1.0)}, law_name="cracking pressure one way",
              continuous=("n_l",)),
         line("line_laminar", needs=OIL),
+        *(line(f"line_{side}", {f"n_{side}": FLOWS}) for side in ("driving", "beside", "passive")),
         *(_of("case_pressure", term) for term in ("case_high_port", "case_ports")),
         *_by_load("gear_load_loss", "gear_load", "g"),
         *_by_load("sheave_bending", "sheave", "s", presumes=("gear_load_loss",)),
@@ -280,8 +281,7 @@ def _unit(times: tuple[str, ...]) -> str:
 
 def _covered(signal: str, runs: Sequence[PreparedRun]) -> FloatArray:
     """What the moving samples of all runs have seen of a signal; empty where no run has it."""
-    parts = [_values(signal, run)[run.used] for run in runs if run.used.any()]
-    return np.concatenate(parts) if parts else np.array([])
+    return np.concatenate([np.array([]), *(_values(signal, run)[run.used] for run in runs if run.used.any())])
 
 
 def _values(signal: str, run: PreparedRun) -> FloatArray:

@@ -53,8 +53,7 @@ def one_load(runs: Sequence[PreparedRun]) -> tuple[str, str] | None:
 
 def no_load(runs: Sequence[PreparedRun]) -> tuple[str, str] | None:
     """What is proportional to the load shows only where something hangs on the drum."""
-    known = any(np.any(run.drum_torque != 0.0) for run in runs)
-    return None if known else ("hook_load", "no run has a load")
+    return None if any(np.any(run.drum_torque != 0.0) for run in runs) else ("hook_load", "no run has a load")
 
 
 def shipped_friction() -> list[Candidate]:
@@ -90,8 +89,7 @@ def shipped_friction() -> list[Candidate]:
 def _of(name: str, grid: Grid | None = None, **more: Any) -> Candidate:
     term = term_named(name)
     if name in OF_WINCH:  # a torque of the whole winch, of which the term states what is typical of one motor
-        linear = (replace(p, typical=REFERENCE_MOTORS * p.typical) for p in term.parameters)
-        more = {"linear": tuple(linear), **more}
+        more = {"linear": tuple(replace(p, typical=REFERENCE_MOTORS * p.typical) for p in term.parameters), **more}
     return friction_candidate(term, grid or {}, **more)
 
 
@@ -102,11 +100,9 @@ def friction_candidate(term: Term, grid: Grid | None = None, **more: Any) -> Can
     `more` are fields of `Candidate`.
     """
     values = _grid(term, grid or {})
-    declared = {p.name: p for p in term.parameters}
+    declared, tried = {p.name: p for p in term.parameters}, () if "shapes" in more else values.items()
     fields: dict[str, Any] = {
-        "continuous": tuple(name for name, tried in values.items() if len(tried) > 1 and declared[name].lower > 0.0)
-        if "shapes" not in more
-        else (),
+        "continuous": tuple(name for name, v in tried if len(v) > 1 and declared[name].lower > 0.0),
         "shapes": _shapes_over(values, [p.name for p in term.parameters if p.unit == "rad/s"]),
         "hydraulic": any(name in term.reads for name in ("pressure", "pressure_sum", "displacement")),
     }
@@ -239,6 +235,7 @@ BEYOND, MOVING_SPEED = 0.25, 1.0  # s and rad/s: a reversal is real where the sh
 FULL_SPEED = 100.0  # rad/s, of motors for which speeds of laws are stated; one of large stroke turns at a tenth
 STEEPEST = 2.0  # exponent of a port's D beyond that of w: 1 of the torque, 1 of a passage that narrows with the stroke
 TURBULENT = 2.5  # exponent of a flow: 2, and what a valve adds that its own flow draws shut
+SIDES = {"n_driving": {True}, "n_beside": {True, False}, "n_passive": {True}}  # runs with a passive side, and without
 WIDEST = 0.5  # of the largest speed, for a curve that falls with it: a wider one is a constant
 
 
@@ -284,9 +281,11 @@ def presliding(values: Values, runs: Sequence[PreparedRun]) -> bool:
     return values["d_z"] > CLEAR * blurred_travel(runs)
 
 
-def line(values: Values, _: Sequence[PreparedRun]) -> bool:
-    """A line loses by the square of its flow, a valve by a little more; what grows faster still is a motor's port."""
-    return all(v <= TURBULENT for name, v in values.items() if name in ("n_l", "n_le"))
+def line(values: Values, runs: Sequence[PreparedRun]) -> bool:
+    """A line loses by the square of its flow, a valve by a little more; what grows faster still is a motor's port. One
+    side has a line of its own where another stands beside it, and is told apart as such where it also runs alone."""
+    beside = {len(run.groups) > 1 for run in runs}
+    return all(v <= TURBULENT and beside >= SIDES.get(n, set()) for n, v in values.items() if n.startswith("n_"))
 
 
 def port(values: Values, _: Sequence[PreparedRun] = ()) -> bool:

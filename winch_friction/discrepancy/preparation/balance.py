@@ -19,7 +19,7 @@ from winch_friction.physics.channels import BAR
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.friction.compiled import CompiledTerms
 from winch_friction.physics.signals import FloatArray, Run
-from winch_friction.physics.winch import Crane, group_point, operating_point
+from winch_friction.physics.winch import Crane, group_point, group_roles, operating_point
 from winch_friction.physics.winch.crane import hydraulic_torque
 from winch_friction.physics.winch.operating_point import TELLING_STROKE
 
@@ -190,8 +190,10 @@ class Balancing:
         columns, motion = self.grid.columns, self.motion
         size = len(self.grid.time)
         optional = {name: columns[name] for name in OPTIONAL if name in columns}
+        roles = group_roles(tuple(self.run.groups))
         signals = [
-            group_point(np.full(size, float(g.count)), g.pressure, g.displacement, g.pressure_sum) for g in groups
+            group_point(np.full(size, float(g.count)), g.pressure, g.displacement, g.pressure_sum, role)
+            for g, role in zip(groups, roles, strict=True)
         ]
         return operating_point(
             direction=motion.direction, speed=motion.state_speed, drum_torque=load.drum_torque,

@@ -49,9 +49,9 @@ def operating_point(
 ) -> tuple[Any, ...]:
     """The operating point as a flat tuple of floats or of arrays; SI.
 
-    `groups` holds per motor group: number of motors, |p_A - p_B|, p_A + p_B, displacement per motor and which port's
-    pressure is the higher (left out: port A's), in short a `group_point`. `optional` are signals of the table that have
-    a default: acceleration, oil_temperature, time, ... (`symbols.WINCH_SIGNALS`).
+    `groups` holds per motor group: number of motors, |p_A - p_B|, p_A + p_B, displacement per motor, which port's
+    pressure is the higher (left out: port A's) and its role (left out: alone), in short a `group_point`. `optional` are
+    signals of the table that have a default: acceleration, oil_temperature, time, ... (`symbols.WINCH_SIGNALS`).
     """
     values = DEFAULTS | optional
     if len(values) > len(DEFAULTS):
@@ -71,16 +71,19 @@ def _whole(group: tuple[Any, ...]) -> tuple[Any, ...]:
     return (*group, *missing)
 
 
-def group_point(count: Any, drop: Any, displacement: Any, pressure_sum: Any = None) -> tuple[Any, ...]:
+def group_point(
+    count: Any, drop: Any, displacement: Any, pressure_sum: Any = None, role: float = 0.0
+) -> tuple[Any, ...]:
     """A motor group's part of an operating point: `drop` is p_A - p_B in Pa, a float or an array; without p_A + p_B the
-    lower port's pressure is taken for zero.
+    lower port's pressure is taken for zero. `role` is +1 of a group that drives beside a passive one, -1 of that.
 
     The higher port is +1 for port A and -1 for port B, so that p_B = (p_A + p_B - higher_port |p_A - p_B|) / 2; it
     steps where the pressures are equal and |p_A - p_B| is zero.
     """
     size = np.abs(drop)
     higher_port = np.where(np.asarray(drop) < 0.0, -1.0, 1.0)
-    return count, size, size if pressure_sum is None else pressure_sum, displacement, higher_port
+    both = size if pressure_sum is None else pressure_sum
+    return count, size, both, displacement, higher_port, np.full_like(size, role, dtype=float)
 
 
 # -- their functions

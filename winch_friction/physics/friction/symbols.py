@@ -50,6 +50,8 @@ GROUP_SIGNALS = (
     _signal("displacement", "D", "m^3/rad", "displacement per motor"),
     # a step at p_A = p_B: an equation must multiply it by the pressure, which is zero there; no table may be over it
     _signal("higher_port", "h", "1", "+1 where p_A is the higher pressure, -1 where p_B is", 1.0),
+    # which of them it is, not what it does: no table may be over it
+    _signal("role", r"\gamma", "1", "+1 of a group that drives beside a passive one, -1 of that, 0 of one alone", 0.0),
 )
 # what the model file carries as constants of the motor and the oil; a displacement of 0 is none; oils weigh 750 (light)
 # to 1450 kg/m^3 (phosphate ester), and are as thin as hot water and as thick as gear oil in frost; twice as much each
@@ -79,6 +81,7 @@ p = _BY_NAME["pressure"]
 p_sum = _BY_NAME["pressure_sum"]
 D = _BY_NAME["displacement"]
 higher_port = _BY_NAME["higher_port"]
+role = _BY_NAME["role"]
 X = _BY_NAME["max_displacement"]
 rho = _BY_NAME["density"]
 mu = _BY_NAME["viscosity"]

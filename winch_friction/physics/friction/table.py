@@ -28,7 +28,7 @@ FACTORS: dict[str, tuple[sp.Expr, str]] = {
     **{
         each.name: (each.symbol, each.unit)
         for each in (*symbols.WINCH_SIGNALS, *symbols.GROUP_SIGNALS)
-        if each.name != "higher_port"
+        if each.name not in ("higher_port", "role")
     },
     "displacement_left": (symbols.X - symbols.D, "m^3/rad"),  # up to the largest
     "flow": (symbols.n * symbols.D * symbols.w, "m^3/s"),  # that a group of motors takes, of no leaks

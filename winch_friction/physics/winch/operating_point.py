@@ -9,6 +9,7 @@ wrong unit or somebody else's message.
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from operator import attrgetter
 from typing import Any, NamedTuple
 
@@ -17,7 +18,7 @@ import numpy as np
 from winch_friction.physics.channels import BAR, CM3_PER_REV, GRAVITY, LIMITS, RPM, WINCH, limits_of
 from winch_friction.physics.friction.compiled import DEFAULTS, ORDER, group_point, operating_point
 from winch_friction.physics.signals import FloatArray, Run, Sample
-from winch_friction.physics.winch.crane import Crane
+from winch_friction.physics.winch.crane import Crane, driving_group
 
 
 # -- the direction of motion
@@ -121,6 +122,14 @@ _DIRECTION, _MAGNITUDE, _SPEED, _DRUM_TORQUE, _ACCELERATION, _MOTOR_TOTAL, _WIRE
 )
 
 
+@lru_cache(maxsize=64)
+def group_roles(groups: tuple[str, ...]) -> tuple[float, ...]:
+    """The signal `role` of each of the motor groups that run, by their names."""
+    if len(groups) < 2:
+        return (0.0,) * len(groups)
+    return tuple(1.0 if name == driving_group(groups) else -1.0 for name in groups)
+
+
 def sample_operating_point(
     sample: Sample, crane: Crane, *, drum_torque: float, speed: float, width: float = 0.0, acceleration: float = 0.0
 ) -> tuple[float, ...]:
@@ -133,10 +142,11 @@ def sample_operating_point(
     x[_DIRECTION], x[_MAGNITUDE], x[_SPEED] = smooth_sign(speed, width), abs(speed), speed
     x[_DRUM_TORQUE], x[_ACCELERATION] = drum_torque, acceleration
     total = 0
-    for name, g in sample.groups.items():
+    roles = group_roles(tuple(sample.groups))
+    for (name, g), role in zip(sample.groups.items(), roles, strict=True):
         a, b, count = g.pressure_a, g.pressure_b, crane.motor_count(name)
         total += count
-        x += count, abs(a - b), a + b, max(g.displacement, LEAST_DISPLACEMENT), -1.0 if a < b else 1.0
+        x += count, abs(a - b), a + b, max(g.displacement, LEAST_DISPLACEMENT), -1.0 if a < b else 1.0, role
     x[_MOTOR_TOTAL] = total if sample.groups else crane.motor_total(())
     return tuple(x)
 
@@ -163,7 +173,8 @@ def run_group(run: Run, crane: Crane, group: str) -> tuple[Any, ...]:
     """`group_point` of one group along a run."""
     a, b = run[f"{group}.pressure_a"], run[f"{group}.pressure_b"]
     displacement = np.maximum(run[f"{group}.displacement"], LEAST_DISPLACEMENT)
-    return group_point(np.full(len(run), crane.motor_count(group)), a - b, displacement, a + b)
+    role = dict(zip(run.groups, group_roles(tuple(run.groups)), strict=True))[group]
+    return group_point(np.full(len(run), crane.motor_count(group)), a - b, displacement, a + b, role)
 
 
 # -- what this crane can show

@@ -118,11 +118,13 @@ def operating_point(p, state, direction, acceleration, time, drum, oil_temperatu
         pressure_sum_driven=pressure_sum,
         displacement_driven=p.displacement,
         higher_port_driven=math.copysign(1.0, dp),
+        role_driven=min(1.0 * p.passive_count, 1.0),  # none is a fraction of a motor
         count_passive=p.passive_count,
         pressure_passive=abs(dp_passive),
         pressure_sum_passive=passive_sum,
         displacement_passive=p.passive_displacement,
         higher_port_passive=math.copysign(1.0, dp_passive),
+        role_passive=-1.0,
     )
 
 

@@ -26,11 +26,13 @@ class Point(NamedTuple):
     pressure_sum_driven: float
     displacement_driven: float
     higher_port_driven: float
+    role_driven: float
     count_passive: float
     pressure_passive: float
     pressure_sum_passive: float
     displacement_passive: float
     higher_port_passive: float
+    role_passive: float
 
 
 POINT_LENGTH = len(Point._fields)

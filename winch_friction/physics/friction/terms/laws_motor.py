@@ -15,6 +15,7 @@ from winch_friction.physics.friction.symbols import (
     oil_temperature,
     p,
     p_sum,
+    role,
     s,
     w,
 )
@@ -87,7 +88,7 @@ viscosity_each_way = _declare(
 # -- motors and lines
 FULL_SPEED, FULL_PRESSURE = 2000.0 * RPM, 200.0 * BAR  # normalise powers: a factor keeps one unit for every exponent
 FULL_FLOW = 0.02  # m^3/s, of one group of motors at speed
-_TINY = 1e-6
+_TINY, _NONE = 1e-6, 1e-12  # a power of nothing has no slope
 
 c_lp = Parameter("c_lp", "N*m", 10.0, upper=1e3, doc="loss at 200 bar and zero displacement")
 a_lp = Parameter("a_lp", "1", 1.0, lower=0.0, upper=3.0, shape=True, doc="exponent of the pressure")
@@ -219,6 +220,27 @@ line_each_motor = _motor(
     "line_each_motor", p_le.symbol * D * (_x * _w + _TINY) ** n_le.symbol * (1 + b_le.symbol * s), (p_le, n_le, b_le),
     "Blasius 1913, Hagen-Poiseuille, of motors that each have a line or a valve of their own", "fluid",
 )  # fmt: skip
+
+
+# the lines of one side alone: a power unit's hoses, or the pipes of an accumulator; polynomials of the role
+def _line_of(side: str, own: sp.Expr, motors: str) -> Term:
+    up, down = (
+        Parameter(f"p_{side}_{way}", "Pa", 2e5, upper=1e9, doc=f"lost in the line of {motors} at 0.02 m^3/s, {way}")
+        for way in ("hoisting", "lowering")
+    )
+    flow = Parameter(f"n_{side}", "1", 1.75, lower=0.1, upper=3.0, shape=True, doc="exponent of the flow")
+    lost = up.symbol * (1 + s) / 2 + down.symbol * (1 - s) / 2
+    return _motor(
+        f"line_{side}", lost * own * D * (n * D * w / FULL_FLOW + _NONE) ** flow.symbol, (up, down, flow),
+        "Blasius 1913 for 1.75, Hagen-Poiseuille for 1, of one side's motors alone", "fluid",
+    )  # fmt: skip
+
+
+_passive = role * (role - 1) / 2
+line_driving = _line_of("driving", 1 - _passive, "the driving motors")
+line_beside = _line_of("beside", role * (role + 1) / 2, "the motors that drive beside passive ones")
+line_passive = _line_of("passive", _passive, "the passive motors")
+
 case_high_port = _motor("case_high_port", c_hi.symbol * (p_sum + p) / 2, (c_hi,), "loss with one port's pressure alone")
 # one port is always the same one, which the high port is not where either may be; together they are the sum of both
 _drop = higher_port * p

@@ -8,9 +8,11 @@ from scipy.optimize import lsq_linear
 from scipy.signal import freqz
 
 from winch_friction.commissioning import balance, diagnose, mistakes
-from winch_friction.commissioning.balance import closure, static_torque, typical_friction
+from winch_friction.commissioning.balance import closure, friction_point, static_torque, typical_friction
 from winch_friction.commissioning.view import MOVING, GroupView, RunView, broken_cells, usable, view_of, views_of
 from winch_friction.physics.channels import GRAVITY
+from winch_friction.physics.friction.compiled import ORDER
+from winch_friction.physics.friction.symbols import GROUP_SIGNALS
 from winch_friction.physics.signals import Run
 
 TIME = np.arange(80) * 0.2
@@ -28,6 +30,16 @@ def view(**more):
         "groups": {"main": GroupView(10.0, 100e5 * ONE, 150e5 * ONE, 3e-5 * ONE)},
     }  # fmt: skip
     return RunView(**{**known, **more})
+
+
+@pytest.mark.parametrize(
+    ("names", "roles"), [("main", [0.0]), ("active passive", [1, -1]), ("passive active", [-1, 1])]
+)
+def test_the_point_of_a_view_knows_which_of_the_groups_drives(names, roles):
+    point = friction_point(view(groups=dict.fromkeys(names.split(), GroupView(5.0, ONE, ONE, ONE))))
+    own = [each.name for each in GROUP_SIGNALS]
+    at = [len(ORDER) + len(own) * k + own.index("role") for k in range(len(roles))]
+    assert [float(point[k][0]) for k in at] == roles
 
 
 # -- what hangs, swings and rubs

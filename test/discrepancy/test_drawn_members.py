@@ -107,7 +107,7 @@ def test_a_loss_of_the_flow_through_each_motor_is_a_lines_and_a_ports():
 
 
 def test_by_much_more_than_the_square_of_its_flow_no_line_loses():
-    runs = [SimpleNamespace(speed=np.linspace(-200.0, 200.0, 101), dt=0.02)]
+    runs = [SimpleNamespace(speed=np.linspace(-200.0, 200.0, 101), dt=0.02, groups=(1,))]
     of = {each.name: each for each in module.literature() if each.law_name == "line_each_motor"}
     tried = {name: {shape.values["n_le"] for shape in law.shapes(runs)} for name, law in of.items()}
     assert tried["port_turbulence"] - tried["line_pressure_drop"] == {2.6}
@@ -117,11 +117,26 @@ def test_by_much_more_than_the_square_of_its_flow_no_line_loses():
     assert not friction.line({"n_le": 2.6}, runs)
 
 
+@pytest.mark.parametrize(
+    ("groups", "sides"), [((1,), ""), ((2, 2), "driving passive"), ((1, 2), "driving beside passive")]
+)
+def test_a_line_of_one_side_is_looked_for_where_there_are_two_sides(groups, sides):
+    """And one that drives both alone and beside another is only then told from one that does so beside it."""
+    runs = [SimpleNamespace(groups=(None,) * count) for count in groups]
+    laws = {f"line_{side}": side for side in ("driving", "beside", "passive")}
+    own = {law.law_name: law.shapes(runs) for law in module.literature() if law.law_name in laws}
+    assert {laws[name] for name, shapes in own.items() if shapes} == set(sides.split())
+    assert all(
+        {s.values[f"n_{laws[name]}"] for s in shapes} == {1.0, 1.75, 2.0} for name, shapes in own.items() if shapes
+    )
+    assert not friction.line({"n_passive": 2.6}, runs)
+
+
 @pytest.mark.parametrize("way", [-1.0, -0.5, 0.5, 1.0])
 def test_motors_of_one_displacement_churn_as_a_line_loses(way):
     """Churning by 0.4 of its mean more one way was a line's alone: churning was tried in one sense of rotation only."""
     laws = {each.law_name: each for each in module.literature()}
-    runs = [SimpleNamespace(speed=np.linspace(-200.0, 200.0, 101), dt=0.02)]
+    runs = [SimpleNamespace(speed=np.linspace(-200.0, 200.0, 101), dt=0.02, groups=(1,))]
     line, churning = (
         {shape.values[b] for shape in laws[law].shapes(runs)}
         for law, b in (("line_pressure_power", "b_l"), ("churning_one_way", "b_cw"))

@@ -26,8 +26,11 @@ from winch_friction.physics.channels import BAR, CM3_PER_REV, RPM
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.friction import term_named
 from winch_friction.physics.friction.compiled import ORDER
+from winch_friction.physics.friction.symbols import GROUP_SIGNALS
 from winch_friction.physics.signals import Run
 from winch_friction.physics.winch import operating_point
+
+ROLE = [signal.name for signal in GROUP_SIGNALS].index("role")
 
 
 def ahc_run(model, crane, active=215.0, load=55e3, tare=0.0):
@@ -434,3 +437,16 @@ def test_a_prediction_is_made_at_the_layer_that_was_said_last_or_at_the_outer_on
     point = dict(zip(ORDER, _points(run, crane, drop, np.full(8, 5.0), np.full(8, 7.0)), strict=False))
     assert point["wire_layer"].tolist() == layers
     assert (point["drum_torque"][0], point["acceleration"][0]) == (5.0, 7.0)
+
+
+def test_a_prediction_knows_which_of_the_groups_drives(crane_150t, crane2_model):
+    run = Run("r", {name: values[:8] for name, values in ahc_run(crane2_model, crane_150t).columns.items()})
+    for names, roles in (
+        (("active", "passive"), [1.0, -1.0]),
+        (("passive", "active"), [-1.0, 1.0]),
+        (("active",), [0.0]),
+    ):
+        drop = {name: run[f"{name}.pressure_a"] - run[f"{name}.pressure_b"] for name in names}
+        point = _points(run, crane_150t, drop, np.ones(8), np.zeros(8))
+        at = [len(ORDER) + len(GROUP_SIGNALS) * k + ROLE for k in range(len(names))]
+        assert [float(point[k][0]) for k in at] == roles

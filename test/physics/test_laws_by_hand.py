@@ -20,15 +20,16 @@ HOISTING = {
     "direction": 1.0, "speed_magnitude": 120.0, "speed": 120.0, "drum_torque": 8e5, "acceleration": 7.0,
     "oil_temperature": 25.0, "time": 2.1e6, "shaft_angle": 1000.3, "wire_layer": 3.0, "wire_out": 80.0,
     "motor_total": 11.0, "count": 3.0, "pressure": 250e5, "pressure_sum": 310e5, "displacement": 2.0e-5,
-    "higher_port": 1.0, "role": 1.0, "max_displacement": 3.42e-5, "density": 880.0, "viscosity": 0.05, "gear_ratio": 250.0,
+    "higher_port": 1.0, "role": 1.0, "max_displacement": 3.42e-5, "density": 880.0, "viscosity": 0.05,
+    "gear_ratio": 250.0,
 }  # fmt: skip
 LOWERING = HOISTING | {
     "direction": -1.0, "speed_magnitude": 15.0, "speed": -15.0, "drum_torque": 3.1e5, "oil_temperature": 55.0,
     "time": 7e5, "shaft_angle": -37.0, "wire_layer": 5.0, "pressure": 165e5, "pressure_sum": 190e5,
     "displacement": 3.0e-5, "higher_port": -1.0, "role": -1.0,
 }  # fmt: skip
-EARLY = LOWERING | {"time": 3e4, "role": 0.0, "drum_torque": 9e4, "pressure": 90e5, "pressure_sum": 120e5, "speed_magnitude": 0.2,
-                    "speed": -0.2}  # fmt: skip
+EARLY = LOWERING | {"time": 3e4, "role": 0.0, "drum_torque": 9e4, "pressure": 90e5, "pressure_sum": 120e5,
+                    "speed_magnitude": 0.2, "speed": -0.2}  # fmt: skip
 POINTS = {"hoisting": HOISTING, "lowering": LOWERING, "early and light": EARLY}
 # what the laws name besides, with its unit: 2000 and 400 rpm, 200 bar, a flow, a load, a speed of rest, a travel
 NAMED = {
@@ -38,8 +39,8 @@ NAMED = {
 SHORT = {
     "s": "direction", "w": "speed_magnitude", "T": "drum_torque", "oil": "oil_temperature", "t": "time",
     "phi": "shaft_angle", "layer": "wire_layer", "N": "motor_total", "n": "count", "p": "pressure",
-    "both": "pressure_sum", "D": "displacement", "port": "higher_port", "role": "role", "X": "max_displacement", "rho": "density",
-    "mu": "viscosity", "i": "gear_ratio",
+    "both": "pressure_sum", "D": "displacement", "port": "higher_port", "role": "role", "X": "max_displacement",
+    "rho": "density", "mu": "viscosity", "i": "gear_ratio",
 }  # fmt: skip
 TYPICAL_TIMES = (1.1, 1.3, 0.9, 1.2, 0.8, 1.15, 0.7)  # so that no two parameters have the same value
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from winch_friction.physics.friction import FrictionModel, term_named
-from winch_friction.physics.friction.symbols import WINCH_SIGNALS
+from winch_friction.physics.friction.symbols import GROUP_SIGNALS, WINCH_SIGNALS
 from winch_friction.physics.signals import GroupSample, Run, Sample
 from winch_friction.physics.winch import operating_point, run_operating_points, sample_operating_point
 from winch_friction.physics.winch.operating_point import (
@@ -45,6 +45,23 @@ def test_a_run_and_its_samples_lose_what_each_port_loses(ports, lost, crane_150t
         point = sample_operating_point(sample, crane_150t, drum_torque=0.0, speed=SPEED)
         assert point[len(WINCH_SIGNALS) :] == tuple(float(each[k]) for each in x[len(WINCH_SIGNALS) :])
         assert functions.scalar_torque(point, ports.values, ()) == pytest.approx(torque, rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("names", "roles"), [("main", [0]), ("active passive", [1, -1]), ("passive active", [-1, 1]), ("passive", [0])]
+)
+def test_a_sample_and_a_run_say_which_of_the_groups_drives(names, roles, crane_150t):
+    names, size = names.split(), len(A)
+    columns = {f"{name}.{of}": x for name in names
+               for of, x in (("pressure_a", A), ("pressure_b", B), ("displacement", np.full(size, 3e-5)))}  # fmt: skip
+    run = Run("roles", {"time": np.arange(size) * 0.1, "motor_speed": np.full(size, SPEED), **columns})
+    sample = Sample(time=0.0, motor_speed=SPEED, groups={name: GroupSample(1e7, 2e6, 3e-5) for name in names})
+    own = [each.name for each in GROUP_SIGNALS]
+    at = [len(WINCH_SIGNALS) + len(own) * k + own.index("role") for k in range(len(names))]
+    one = sample_operating_point(sample, crane_150t, drum_torque=0.0, speed=SPEED)
+    whole = run_operating_points(run, crane_150t, drum_torque=np.zeros(size))
+    order = [run.groups.index(name) for name in names]
+    assert [one[k] for k in at] == roles == [float(whole[at[k]][-1]) for k in order]
 
 
 def test_a_loss_with_one_port_has_no_step_where_the_pressures_are_equal(ports):

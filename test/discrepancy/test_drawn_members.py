@@ -118,18 +118,18 @@ def test_by_much_more_than_the_square_of_its_flow_no_line_loses():
 
 
 @pytest.mark.parametrize(
-    ("groups", "sides"), [((1,), ""), ((2, 2), "driving passive"), ((1, 2), "driving beside passive")]
+    ("groups", "sides"), [((1,), ""), ((2, 2), "driving passive"), ((1, 2), "driving active passive")]
 )
 def test_a_line_of_one_side_is_looked_for_where_there_are_two_sides(groups, sides):
     """And one that drives both alone and beside another is only then told from one that does so beside it."""
     runs = [SimpleNamespace(groups=(None,) * count) for count in groups]
-    laws = {f"line_{side}": side for side in ("driving", "beside", "passive")}
+    laws = {f"line_{side}": side for side in ("driving", "active", "passive")}
     own = {law.law_name: law.shapes(runs) for law in module.literature() if law.law_name in laws}
     assert {laws[name] for name, shapes in own.items() if shapes} == set(sides.split())
     assert all(
-        {s.values[f"n_{laws[name]}"] for s in shapes} == {1.0, 1.75, 2.0} for name, shapes in own.items() if shapes
+        {s.values[f"n_l{laws[name][0]}"] for s in shapes} == {1.0, 1.75, 2.0} for name, shapes in own.items() if shapes
     )
-    assert not friction.line({"n_passive": 2.6}, runs)
+    assert not friction.line({"n_lp": 2.6}, runs)
 
 
 @pytest.mark.parametrize("way", [-1.0, -0.5, 0.5, 1.0])

@@ -39,8 +39,8 @@ def point(speed=-20.0, groups=((3.0, -80e5, 3e-5, 120e5), (8.0, 200e5, 1e-5, 240
 # -- the operating point
 @pytest.mark.parametrize(("drop", "higher"), [(-5e5, -1.0), (5e5, 1.0), (0.0, 1.0)])
 def test_a_groups_pressures_are_a_size_and_the_port_that_is_higher(drop, higher):
-    count, size, both, displacement, port = group_point(3, drop, 2e-5, 9e5)
-    assert (count, size, both, displacement, float(port)) == (3, abs(drop), 9e5, 2e-5, higher)
+    count, size, both, displacement, port, role = group_point(3, drop, 2e-5, 9e5)
+    assert (count, size, both, displacement, float(port), float(role)) == (3, abs(drop), 9e5, 2e-5, higher, 0.0)
     assert group_point(3, drop, 2e-5)[2] == abs(drop)  # of the lower port none is known
     several = group_point(3, np.array([drop, -drop]), 2e-5)
     assert several[1].tolist() == [abs(drop)] * 2
@@ -48,12 +48,12 @@ def test_a_groups_pressures_are_a_size_and_the_port_that_is_higher(drop, higher)
 
 def test_what_is_not_said_of_a_point_is_usual_and_what_is_not_known_is_refused():
     known = {"direction": 1.0, "speed": -4.0, "drum_torque": 1.0, "motor_total": 2.0}
-    x = operating_point(**known, groups=[(1.0, 2.0, 3.0, 4.0), (1.0, 2.0, 3.0, 4.0, -1.0)])
+    x = operating_point(**known, groups=[(1.0, 2.0, 3.0, 4.0), (1.0, 2.0, 3.0, 4.0, -1.0, -1.0)])
     assert x[:3] == (1.0, 4.0, -4.0)
-    assert x[-10:] == (1.0, 2.0, 3.0, 4.0, 1.0, 1.0, 2.0, 3.0, 4.0, -1.0)
+    assert x[-12:] == (1.0, 2.0, 3.0, 4.0, 1.0, 0.0, 1.0, 2.0, 3.0, 4.0, -1.0, -1.0)
     with pytest.raises(TypeError, match=r"no such signals: \['colour'\]"):
         operating_point(**known, colour=1.0)
-    for wrong in ((1.0, 2.0, 3.0), (1.0, 2.0, 3.0, 4.0, 1.0, 6.0)):
+    for wrong in ((1.0, 2.0, 3.0), (1.0, 2.0, 3.0, 4.0, 1.0, 6.0, 7.0)):
         with pytest.raises(TypeError, match=f"not {len(wrong)} values"):
             operating_point(**known, groups=[wrong])
 

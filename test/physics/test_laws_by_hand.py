@@ -65,8 +65,8 @@ def way(q, up, down):
 
 
 def line_of(side, q, v):
-    lost = way(q, v[f"p_{side}_hoisting"], v[f"p_{side}_lowering"])
-    return lost * (q.n * q.D * q.w / q.flow) ** v[f"n_{side}"] * q.D
+    lost = way(q, v[f"p_l{side[0]}h"], v[f"p_l{side[0]}l"])
+    return lost * (q.n * q.D * q.w / q.flow) ** v[f"n_l{side[0]}"] * q.D
 
 
 def since(q, begin, lag):
@@ -159,7 +159,7 @@ PER_MOTOR = {
         v["p_le"] * (q.D / q.X * q.w / q.fast) ** v["n_le"] * q.D * way(q, 1.0 + v["b_le"], 1.0 - v["b_le"])
     ),
     "line_driving": lambda q, v: 0.0 if q.role < 0.0 else line_of("driving", q, v),
-    "line_beside": lambda q, v: line_of("beside", q, v) if q.role > 0.0 else 0.0,
+    "line_active": lambda q, v: line_of("active", q, v) if q.role > 0.0 else 0.0,
     "line_passive": lambda q, v: line_of("passive", q, v) if q.role < 0.0 else 0.0,
     "case_high_port": lambda q, v: v["c_hi"] * (q.both + q.p) / 2.0,
     "case_ports": lambda q, v: v["K_pA"] * (q.both + q.p * q.port) / 2.0 + v["K_pB"] * (q.both - q.p * q.port) / 2.0,
@@ -405,7 +405,7 @@ def test_a_memory_starts_from_nothing(name):
 FLUID = {
     "line_pressure_drop", "viscosity_temperature", "viscosity_reference", "viscosity_vogel", "viscosity_exponential",
     "viscosity_hersey", "viscosity_each_way", "line_pressure_power", "line_laminar", "line_each_motor",
-    "line_driving", "line_beside", "line_passive",
+    "line_driving", "line_active", "line_passive",
 }  # fmt: skip
 
 

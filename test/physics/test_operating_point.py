@@ -85,7 +85,7 @@ def test_port_a_is_the_higher_where_nobody_says():
 
 
 POWERS = ("port_turbulence", "port_power", "port_one_way", "mj5_port_flow", "line_pressure_power", "line_each_motor",
-          "line_beside")  # fmt: skip
+          "line_active")  # fmt: skip
 
 
 @pytest.mark.parametrize("name", POWERS)

@@ -149,7 +149,7 @@ def test_a_users_file_that_fails_half_way_adds_nothing(tmp_path):
         ("presliding", ("direction", "drum_torque", "speed_magnitude"), False),
         ("dwell_stiction", ("direction", "drum_torque", "speed_magnitude"), False),
         ("torque_ripple", ("drum_torque", "gear_ratio", "shaft_angle"), False),
-        ("line_beside", ("count", "direction", "displacement", "role", "speed_magnitude"), True),
+        ("line_active", ("count", "direction", "displacement", "role", "speed_magnitude"), True),
         ("case_ports", ("direction", "higher_port", "pressure", "pressure_sum"), True),
         ("wilson_constant", ("direction", "max_displacement"), False),
     ],

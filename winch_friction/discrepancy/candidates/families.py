@@ -81,7 +81,7 @@ def literature() -> list[Candidate]:
         line("line_pressure_power", {"n_l": (0.25,), "b_l": (-1.0, 1.0)}, law_name="cracking pressure one way",
              continuous=("n_l",)),
         line("line_laminar", needs=OIL),
-        *(line(f"line_{side}", {f"n_{side}": FLOWS}) for side in ("driving", "beside", "passive")),
+        *(line(f"line_{side}", {f"n_l{side[0]}": FLOWS}) for side in ("driving", "active", "passive")),
         *(_of("case_pressure", term) for term in ("case_high_port", "case_ports")),
         *_by_load("gear_load_loss", "gear_load", "g"),
         *_by_load("sheave_bending", "sheave", "s", presumes=("gear_load_loss",)),

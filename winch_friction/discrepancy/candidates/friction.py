@@ -235,7 +235,7 @@ BEYOND, MOVING_SPEED = 0.25, 1.0  # s and rad/s: a reversal is real where the sh
 FULL_SPEED = 100.0  # rad/s, of motors for which speeds of laws are stated; one of large stroke turns at a tenth
 STEEPEST = 2.0  # exponent of a port's D beyond that of w: 1 of the torque, 1 of a passage that narrows with the stroke
 TURBULENT = 2.5  # exponent of a flow: 2, and what a valve adds that its own flow draws shut
-SIDES = {"n_driving": {True}, "n_beside": {True, False}, "n_passive": {True}}  # runs with a passive side, and without
+SIDES = {"n_ld": {True}, "n_la": {True, False}, "n_lp": {True}}  # runs with a passive side, and without
 WIDEST = 0.5  # of the largest speed, for a curve that falls with it: a wider one is a constant
 
 

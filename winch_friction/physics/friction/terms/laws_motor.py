@@ -225,10 +225,12 @@ line_each_motor = _motor(
 # the lines of one side alone: a power unit's hoses, or the pipes of an accumulator; polynomials of the role
 def _line_of(side: str, own: sp.Expr, motors: str) -> Term:
     up, down = (
-        Parameter(f"p_{side}_{way}", "Pa", 2e5, upper=1e9, doc=f"lost in the line of {motors} at 0.02 m^3/s, {way}")
+        Parameter(
+            f"p_l{side[0]}{way[0]}", "Pa", 2e5, upper=1e9, doc=f"lost in the line of {motors} at 0.02 m^3/s, {way}"
+        )
         for way in ("hoisting", "lowering")
     )
-    flow = Parameter(f"n_{side}", "1", 1.75, lower=0.1, upper=3.0, shape=True, doc="exponent of the flow")
+    flow = Parameter(f"n_l{side[0]}", "1", 1.75, lower=0.1, upper=3.0, shape=True, doc="exponent of the flow")
     lost = up.symbol * (1 + s) / 2 + down.symbol * (1 - s) / 2
     return _motor(
         f"line_{side}", lost * own * D * (n * D * w / FULL_FLOW + _NONE) ** flow.symbol, (up, down, flow),
@@ -238,7 +240,7 @@ def _line_of(side: str, own: sp.Expr, motors: str) -> Term:
 
 _passive = role * (role - 1) / 2
 line_driving = _line_of("driving", 1 - _passive, "the driving motors")
-line_beside = _line_of("beside", role * (role + 1) / 2, "the motors that drive beside passive ones")
+line_active = _line_of("active", role * (role + 1) / 2, "the motors that drive beside passive ones")
 line_passive = _line_of("passive", _passive, "the passive motors")
 
 case_high_port = _motor("case_high_port", c_hi.symbol * (p_sum + p) / 2, (c_hi,), "loss with one port's pressure alone")

@@ -93,7 +93,7 @@ $(addprefix campaign-,$(CAMPAIGNS)): $(READY)
 campaign-import: $(READY)
 	$(BIN)/python -m campaign.import_logs $(ARGS)
 
-# small semantic faults in a copy of the package: do the tests notice?
+# small semantic faults in a copy of the package, drawn from a long list: do the tests notice?
 mutants: $(READY)
 	$(BIN)/python -m campaign.mutants $(ARGS)
 

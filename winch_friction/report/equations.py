@@ -20,7 +20,7 @@ _WRITTEN = {
     "direction": "sgn(ω)", "speed_magnitude": "|ω|", "speed": "ω", "drum_torque": "T_d", "acceleration": "ω̇",
     "oil_temperature": "ϑ", "shaft_angle": "φ", "wire_layer": "layer", "wire_out": "L", "motor_total": "N",
     "count": "n", "pressure": "Δp", "pressure_sum": "Σp", "displacement": "D", "higher_port": "sgn(p_A - p_B)",
-    "role": "role",    "max_displacement": "D_max", "density": "ρ", "viscosity": "μ", "gear_ratio": "i",
+    "role": "role", "max_displacement": "D_max", "density": "ρ", "viscosity": "μ", "gear_ratio": "i",
 }  # fmt: skip
 _NEGLIGIBLE = 1e-7  # of the largest number in a sum: keeps a derivative finite, means nothing
 

@@ -229,6 +229,15 @@ def test_a_share_of_the_largest_displacement_is_put_right_to_it(crane_150t):
     assert {words: pytest.approx(factor * read[words]) for factor, words in shares} == dict.fromkeys(read, largest)
 
 
+def test_either_port_may_have_a_transducer_of_another_unit_of_a_hundred_times_at_most(crane_150t):
+    """An input of 0 to 600 read in MPa for bar, kPa or psi; nobody reads a transducer of Pa as one of bar."""
+    told = {each.channel: set() for each in mistakes._units([view(rates={})], crane_150t, ("main",))}
+    for each in mistakes._units([view(rates={})], crane_150t, ("main",)):
+        told[each.channel].add(round(each.factor, 4))
+    assert told["pressure_a"] == told["pressure_b"] == {10.0, 0.1, 0.0689, 14.5038, 0.01, 100.0}
+    assert min(told["pressure"]) < 1e-4
+
+
 # -- mistakes that only some runs can hold
 def test_a_layer_is_doubted_unless_every_run_lies_on_it(crane_150t):
     def doubted(*layers):

@@ -630,6 +630,24 @@ def test_what_is_no_gain_to_begin_with_is_compared_with_nothing(inertia, coulomb
     assert gained(1.0, 100.0, 0.5, on=balance)[1] is False  # and begins once it is one
 
 
+def test_a_gain_is_looked_for_once_a_second(monkeypatch):
+    balance, looked = InertiaBalance(CRANE), []
+    monkeypatch.setattr(balance, "_look", lambda sample: looked.append(round(sample.time, 1)))
+    for k in range(36):
+        balance.contradiction(row(1000.0 + 0.1 * k))
+    assert looked == pytest.approx([1000.0, 1001.0, 1002.0, 1003.0], abs=0.11)
+
+
+def test_an_estimator_tells_motion_from_rest_at_the_speed_of_its_motors():
+    """5 rad/s; of a motor on the drum that is rated for 10 rad/s, a tenth of the 100 of quick ones, half a rad/s."""
+    for rated, least in ((10.0, 0.5), (CRANE.rated_speed, 5.0)):
+        own = SimpleNamespace(
+            law=SimpleNamespace(crane=replace(CRANE, rated_speed=rated)), inputs=SimpleNamespace(ranges=RANGES)
+        )
+        EstimatorService._watch_loads(own)
+        assert [own._balance._moving, own._still._moving] == pytest.approx([least, least])
+
+
 def test_a_step_of_the_balance_is_what_the_smoothed_signals_do_by_hand():
     """Half of a step of 0.1 s passes the first low-pass of 0.1 s and a quarter the second; 10 rad/s are 50 rad/s^2."""
     balance, lever = InertiaBalance(CRANE), CRANE.drum.radius(math.nan) / CRANE.gear_ratio

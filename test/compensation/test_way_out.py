@@ -167,9 +167,7 @@ def test_a_sample_that_begins_anew_after_a_pause_is_no_step():
 
 
 @pytest.mark.parametrize(("passed", "left"), [(0.05, 100.0), (0.15, 75.0), (0.25, 25.0), (0.5, 0.0)])
-def test_what_pushes_against_the_measured_motion_is_let_go_soon_after_the_longest_lag(
-    passed, left
-):
+def test_what_pushes_against_the_measured_motion_is_let_go_soon_after_the_longest_lag(passed, left):
     """100 N m that have only begun to push against a motion; a healthy winch lags behind by a tenth of a second."""
     output = SafeOutput(absolute=1000.0, slew=1e6, ramp_time=0.5, hold=1.0)
     output.torque, output._motion, output._passed = 100.0, -50.0, passed

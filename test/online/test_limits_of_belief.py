@@ -420,6 +420,17 @@ def test_what_came_before_the_first_speed_is_held_unless_it_is_stamped_beyond_th
     assert math.isfinite(fed.service.inputs.hold.stamp("active.pressure_a", math.inf)) is kept
 
 
+def test_gates_that_begin_anew_hold_nothing_and_believe_any_stamp():
+    fed = Fed()
+    fed.run(0.1)
+    gate = fed.service.inputs
+    assert math.isfinite(gate.hold.stamp("active.pressure_a", math.inf))
+    assert not gate._near(START + 3600.0, fed.now)
+    gate.forget()
+    assert math.isnan(gate.hold.stamp("active.pressure_a", math.inf))
+    assert gate._near(START + 3600.0, fed.now)
+
+
 def test_what_is_missing_without_a_speed_is_told_with_the_reason_where_some_still_come():
     gate = service().inputs
     arrivals = gate.arrivals[TOPICS.speed_topic]

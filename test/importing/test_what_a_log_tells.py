@@ -265,3 +265,11 @@ def test_a_clock_that_goes_back_says_how_often_and_where_first(back, then, crane
         f"log: time goes back 2 times, first after sample 101 by {99.0 - back:.4g} s: several recordings in one file? "
         "cut it there"
     ]
+
+
+def test_what_an_electric_drive_can_is_what_it_gives_but_for_one_sample_in_twenty(crane):
+    """Its log names no motors: of 0 to 400 N m evenly, either way, 380; a spike is no capacity."""
+    electric = replace(crane, drive=Drive(ELECTRIC))
+    given = np.linspace(-400.0, 400.0, 801)
+    given[400] = np.nan
+    assert balance._capacity({}, electric, given) == pytest.approx(380.0, abs=1.0)

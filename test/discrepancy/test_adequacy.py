@@ -409,3 +409,17 @@ def test_a_reversal_through_rest_is_one_and_one_load_and_displacement_are_enough
     assert found["reversals"].value == 1.0
     assert [(found[what].needed, found[what].met) for what in ("loads", "displacements")] == [(1.0, True)] * 2
     assert found["oil temperatures, span"].needed == found["reversals"].needed == 0.0
+
+
+def test_what_is_needed_and_no_more_is_enough():
+    runs = [Run("r", {"time": np.array([0.0, 1.0]), "motor_speed": np.zeros(2)})]
+    needed = {each.what: each.needed for each in of_records(runs, runs)}["longest record"]
+    exact = [Run("r", {"time": np.linspace(0.0, needed, 200), "motor_speed": np.zeros(200)})]
+    (own,) = [each for each in of_records(exact, exact) if each.what == "longest record"]
+    assert (own.value, own.met) == (needed, True)
+
+
+def test_rows_without_a_time_at_the_end_make_no_record_short():
+    time = np.concatenate([np.arange(0.0, 300.0, 0.1), [np.nan, np.nan]])
+    kept, notes = long_enough([Run("r", {"time": time, "motor_speed": np.sin(time)})])
+    assert ([each.name for each in kept], notes) == (["r"], [])

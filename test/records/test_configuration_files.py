@@ -426,4 +426,4 @@ def test_a_key_that_stands_thrice_is_told_with_the_line_on_which_it_stood_first(
     with pytest.raises(InputError) as told:
         parse_yaml("a: 1\nb: 2\na: 3\na: 4\n", "here")
     said = "key 'a' stands on line 1 already; keep one of them"
-    assert told.value.args == (f"here line 3: {said}", f"here line 4: {said}")
+    assert list(told.value.problems) == [f"here line 3: {said}", f"here line 4: {said}"]

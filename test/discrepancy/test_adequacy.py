@@ -1,5 +1,6 @@
 """What the runs must hold before anything is searched: both directions, enough of a log, and what is left out."""
 
+from contextlib import nullcontext
 from dataclasses import dataclass, replace
 from types import SimpleNamespace
 
@@ -419,7 +420,11 @@ def test_what_is_needed_and_no_more_is_enough():
     assert (own.value, own.met) == (needed, True)
 
 
-def test_rows_without_a_time_at_the_end_make_no_record_short():
-    time = np.concatenate([np.arange(0.0, 300.0, 0.1), [np.nan, np.nan]])
-    kept, notes = long_enough([Run("r", {"time": time, "motor_speed": np.sin(time)})])
-    assert ([each.name for each in kept], notes) == (["r"], [])
+@pytest.mark.parametrize(("lasts", "said"), [(0.5, "lasts 0.5 s; that is no record"), (3.0, "left out: it lasts 3 s")])
+def test_rows_without_a_time_at_the_end_make_no_record_long(lasts, said):
+    time = np.concatenate([np.linspace(0.0, lasts, 51), [np.nan, np.nan]])
+    runs = [Run("r", {"time": time, "motor_speed": np.ones(53)})]
+    with pytest.raises(InputError, match=said) if lasts < 1.0 else nullcontext():
+        kept, notes = long_enough(runs)
+        assert kept == []
+        assert said in notes[0]

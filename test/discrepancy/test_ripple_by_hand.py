@@ -96,6 +96,15 @@ def test_a_runs_inertia_acceleration_and_static_torque_are_those_at_the_motor(mo
     assert (own.moving == (TIME > 1.0)).all()
 
 
+def test_a_row_without_a_time_is_no_instant_of_a_run(monkeypatch):
+    run, prepared, crane = logged()
+    at = np.where(np.arange(SIZE) == 70, np.nan, run.time)
+    monkeypatch.setattr(module, "run_drive_torque", lambda run, crane: TIME)
+    own = AsLogged(Run("r", run.columns | {"time": at}), prepared, crane)
+    assert own.torque.tolist() == own.of(TIME).tolist() == np.delete(TIME, 70).tolist()
+    assert np.isfinite(own.acceleration).all()
+
+
 @pytest.mark.parametrize(("terms", "inertia"), [((), False), ((), True), (("torque_ripple",), True)])
 def test_what_is_looked_at_is_the_fast_torque_without_what_is_known_of_it(monkeypatch, terms, inertia):
     """A fast wave beside what inertia takes and what the model's own ripple is; what is slower than a window goes."""

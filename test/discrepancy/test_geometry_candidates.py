@@ -83,6 +83,7 @@ def test_every_layer_may_have_an_error_of_its_own_where_there_is_more_than_one()
     assert [p.name for p in layers_apart([own])[0].linear] == ["e_R1", "e_R2"]
     own.channels["wire_layer"] = np.array([1.0, 2.0, 4.0])  # of a drum of four; the third no run has
     (law,) = layers_apart([own])
+    assert law.varies_with == ("drum_torque", "wire_layer")  # of no other signal
     assert (law.name, [p.name for p in law.linear]) == ("layer_radius", ["e_R1", "e_R2", "e_R4"])
     whole = radius_columns(own, {"layer": 0.0})[:, 0]
     np.testing.assert_allclose(law.columns(own, {}), np.diag(whole))

@@ -9,7 +9,7 @@ from scipy.signal import freqz
 
 from winch_friction.commissioning import balance, diagnose, mistakes
 from winch_friction.commissioning.balance import closure, static_torque, typical_friction
-from winch_friction.commissioning.view import MOVING, GroupView, RunView, broken_cells, usable, view_of, views_of
+from winch_friction.commissioning.view import GroupView, RunView, broken_cells, usable, view_of, views_of
 from winch_friction.physics.channels import GRAVITY
 from winch_friction.physics.signals import Run
 
@@ -141,7 +141,7 @@ def test_what_closes_is_said_in_newton_metres():
 
 # -- a run in blocks
 def test_a_block_beside_a_turn_has_no_certain_direction():
-    speed = np.array([50.0, 50.0, 50.0, -50.0, -50.0, -50.0, 1.0, 2.0 * MOVING * 50.0, 50.0, np.nan])
+    speed = np.array([50.0, 50.0, 50.0, -50.0, -50.0, -50.0, 1.0, 3.0, 50.0, np.nan])
     found = view(speed=speed).moving
     assert found.tolist() == [True, True, False, False, True, False, False, True, False, False]
 
@@ -236,6 +236,12 @@ def test_either_port_may_have_a_transducer_of_another_unit_of_a_hundred_times_at
         told[each.channel].add(round(each.factor, 4))
     assert told["pressure_a"] == told["pressure_b"] == {10.0, 0.1, 0.0689, 14.5038, 0.01, 100.0}
     assert min(told["pressure"]) < 1e-4
+
+
+@pytest.mark.parametrize(("slow", "moves"), [(2.9, False), (3.1, True), (-3.1, True), (-2.9, False)])
+def test_a_block_moves_from_three_per_cent_of_the_largest_speed_on(slow, moves):
+    speed = np.where(np.arange(80) < 40, np.sign(slow) * 100.0, slow)
+    assert view(speed=speed).moving[50:].tolist() == [moves] * 30
 
 
 # -- mistakes that only some runs can hold

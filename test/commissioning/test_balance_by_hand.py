@@ -9,7 +9,7 @@ from scipy.signal import freqz
 
 from winch_friction.commissioning import balance, diagnose, mistakes
 from winch_friction.commissioning.balance import closure, friction_point, static_torque, typical_friction
-from winch_friction.commissioning.view import MOVING, GroupView, RunView, broken_cells, usable, view_of, views_of
+from winch_friction.commissioning.view import GroupView, RunView, broken_cells, usable, view_of, views_of
 from winch_friction.physics.channels import GRAVITY
 from winch_friction.physics.friction.compiled import ORDER
 from winch_friction.physics.friction.symbols import GROUP_SIGNALS
@@ -153,7 +153,7 @@ def test_what_closes_is_said_in_newton_metres():
 
 # -- a run in blocks
 def test_a_block_beside_a_turn_has_no_certain_direction():
-    speed = np.array([50.0, 50.0, 50.0, -50.0, -50.0, -50.0, 1.0, 2.0 * MOVING * 50.0, 50.0, np.nan])
+    speed = np.array([50.0, 50.0, 50.0, -50.0, -50.0, -50.0, 1.0, 3.0, 50.0, np.nan])
     found = view(speed=speed).moving
     assert found.tolist() == [True, True, False, False, True, False, False, True, False, False]
 
@@ -241,6 +241,21 @@ def test_a_share_of_the_largest_displacement_is_put_right_to_it(crane_150t):
     assert {words: pytest.approx(factor * read[words]) for factor, words in shares} == dict.fromkeys(read, largest)
 
 
+def test_either_port_may_have_a_transducer_of_another_unit_of_a_hundred_times_at_most(crane_150t):
+    """An input of 0 to 600 read in MPa for bar, kPa or psi; nobody reads a transducer of Pa as one of bar."""
+    told = {each.channel: set() for each in mistakes._units([view(rates={})], crane_150t, ("main",))}
+    for each in mistakes._units([view(rates={})], crane_150t, ("main",)):
+        told[each.channel].add(round(each.factor, 4))
+    assert told["pressure_a"] == told["pressure_b"] == {10.0, 0.1, 0.0689, 14.5038, 0.01, 100.0}
+    assert min(told["pressure"]) < 1e-4
+
+
+@pytest.mark.parametrize(("slow", "moves"), [(2.9, False), (3.1, True), (-3.1, True), (-2.9, False)])
+def test_a_block_moves_from_three_per_cent_of_the_largest_speed_on(slow, moves):
+    speed = np.where(np.arange(80) < 40, np.sign(slow) * 100.0, slow)
+    assert view(speed=speed).moving[50:].tolist() == [moves] * 30
+
+
 # -- mistakes that only some runs can hold
 def test_a_layer_is_doubted_unless_every_run_lies_on_it(crane_150t):
     def doubted(*layers):
@@ -294,3 +309,34 @@ def test_a_delay_is_looked_for_beside_the_likeliest_mistake_alone(monkeypatch):
     late = mistakes.Mistake("delay", "motor_speed", "late", 1.0, lambda each: each)
     found = diagnose._beside(firsts, [*firsts, late], [view()])
     assert [tuple(part.channel for part in each.parts) for each in found] == [("hook_load", "motor_speed")]
+
+
+def test_every_two_common_mistakes_of_different_things_are_tried_together():
+    """The sign of one channel, two ports or two groups exchanged, and a usual unit; a rare unit, a scale or a delay as
+    one of two explains whatever there is."""
+    causes = {"sign": "motor_speed", "ports": "main", "groups": "active", "scale": "hook_load", "delay": "motor_speed"}
+    known = [mistakes.Mistake(cause, channel, cause, 1.0, lambda each: each) for cause, channel in causes.items()]
+    units = ("hook_load holds kg under [t]", "hook_load holds lb under [t]")
+    known += [mistakes.Mistake("unit", "hook_load", words, 0.0, lambda each: each, 1e-3) for words in units]
+    found = {tuple(part.words.split(" ")[-1] for part in each.parts) for each in diagnose.common_pairs(known)}
+    alone = ("sign", "ports", "groups", "[t]")
+    assert found == {(first, second) for k, first in enumerate(alone) for second in alone[k + 1 :]}
+
+
+def test_the_eight_that_leave_least_of_the_worst_runs_are_tried_on_every_run(monkeypatch):
+    bench = diagnose._Bench([view()], np.array([900.0]), None)
+    monkeypatch.setattr(bench, "_undone", lambda mistake, own: 10.0 * mistake.cost)
+    monkeypatch.setattr(bench, "_tried", lambda mistake: diagnose.Hypothesis(mistake, -mistake.cost, (), ()))
+    asked = [mistakes.Mistake("unit", "hook_load", "", float(cost), lambda each: each) for cost in range(12)]
+    assert [each.mistake.cost for each in bench.ranked(asked[::-1])] == [7.0, 6.0, 5.0, 4.0, 3.0, 2.0, 1.0, 0.0]
+
+
+@pytest.mark.parametrize(("blocks", "said"), [(80, True), (5, True), (4, False)])
+def test_the_mass_that_a_load_lacks_is_told_by_a_run_of_five_blocks(blocks, said):
+    """Of 500 kg more than the cell says: ten motors of 30 cm^3/rad each hold it, beside friction and inertia."""
+    as_told = view()
+    drive = static_torque(as_told) + typical_friction(as_told) + 1.5 * 2.0 + 500.0 * GRAVITY * LEVER
+    shown = np.where(np.cumsum(as_told.moving) <= blocks, drive / (10.0 * 3e-5), np.nan)
+    found = diagnose._free([view(groups={"main": GroupView(10.0, shown, 150e5 * ONE, 3e-5 * ONE)})])
+    assert [each.factor for each in found if each.cause == "tare"] == [pytest.approx(500.0)] * said
+    assert bool(found) == said

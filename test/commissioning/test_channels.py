@@ -82,6 +82,22 @@ def test_a_gap_and_an_uneven_clock_are_said():
     assert said(np.cumsum(np.resize([0.02, 0.02, 0.02, 0.04], 400))) == {"jitter": "warning"}
 
 
+@pytest.mark.parametrize(("off", "found"), [(0.25, {}), (0.35, {"jitter": "warning"}), (0.55, {"jitter": "warning"})])
+def test_a_clock_is_uneven_where_a_step_in_ten_is_a_third_off(off, found):
+    """Every fourth step of 20 ms is longer by that share of it."""
+    assert said(np.cumsum(np.resize([0.02, 0.02, 0.02, 0.02 * (1.0 + off)], 400))) == found
+
+
+def test_the_clock_of_every_run_is_looked_at():
+    crane = load_crane("crane_150t")
+    steps = {"a": np.full(400, 0.02), "b": np.resize([0.02, 0.02, 0.02, 0.04], 400)}
+    rest = {"motor_speed": 0.0, "hook_load": 0.0, "main.pressure_a": 30e5, "main.pressure_b": 30e5,
+            "main.displacement": crane.max_displacement}  # fmt: skip
+    still = {name: np.full(400, value) for name, value in rest.items()}
+    runs = [Run(name, {"time": np.cumsum(own), **still}) for name, own in steps.items()]
+    assert [each.runs for each in quick_check(runs, crane) if each.cause == "jitter"] == [("b",)]
+
+
 def test_an_uneven_clock_of_many_runs_is_said_once():
     """A logger that is uneven is so in every run: a line for each buries what else there is to say."""
     steps = np.resize([0.02, 0.02, 0.02, 0.04], 400)

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from winch_friction.commissioning import excitation
-from winch_friction.commissioning.excitation import DISPLACEMENTS, HOLDING_PRESSURE, LOADS, SPEEDS, Taught
+from winch_friction.commissioning.excitation import DISPLACEMENTS, LOADS, SPEEDS, Taught
 from winch_friction.physics.channels import RPM
 
 
@@ -40,12 +40,12 @@ def test_a_test_at_a_smaller_displacement_shows_a_higher_pressure(crane_150t, cr
     excitation._test_rows(crane_150t, known, 100.0, 0.3, 0.5)
     (point,) = asked
     motors = max(crane_150t.groups.values())
-    torque = 0.3 * motors * crane_150t.max_displacement * HOLDING_PRESSURE
+    torque = 0.3 * motors * crane_150t.max_displacement * 250e5
     values = [np.broadcast_to(each, 2).tolist() for each in point]
     assert [1.0, -1.0] in values
     assert values.count([float(motors)] * 2) == 2  # of the group and on the shaft
     assert any(each == pytest.approx([torque * crane_150t.gear_ratio] * 2) for each in values)
-    assert any(each == pytest.approx([0.6 * HOLDING_PRESSURE] * 2) for each in values)
+    assert any(each == pytest.approx([150e5] * 2) for each in values)
     assert any(each == pytest.approx([0.5 * crane_150t.max_displacement] * 2) for each in values)
 
 

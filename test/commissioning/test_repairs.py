@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from winch_friction.commissioning import diagnose, kinematics, mistakes
-from winch_friction.commissioning.kinematics import FASTEST, LATE, LOWEST_SUM, agreements, excesses
+from winch_friction.commissioning.kinematics import LATE, agreements, excesses
 from winch_friction.commissioning.repairs import (
     displacement_times,
     drop_times,
@@ -83,6 +83,11 @@ def test_a_wire_that_is_paid_out_to_several_falls_is_told_as_such(told, said):
     assert found.cause == "companion"  # the balance does not use it
 
 
+def test_each_channel_is_held_against_the_speed_by_what_it_tells_itself():
+    found = diagnose._companions([view(rates={"wire_out": 2.5 * SPEED / 250.0, "speed_reference": SPEED})])
+    assert {each.channel: each.factor for each in found} == pytest.approx({"wire_out": 2.5, "speed_reference": 1.0})
+
+
 def test_exchanged_groups_keep_their_numbers_of_motors():
     found = mistakes._exchanged("active", "passive")(view()).groups
     assert (found["active"].count, found["active"].drop[0]) == (3.0, 200e5)
@@ -132,9 +137,10 @@ def swung(share):
     ("changed", "beyond"),
     [
         ({}, {}),
-        ({"speed": 2.0 * FASTEST * ONE}, {"motor_speed": 2.0}),
+        ({"speed": 1300.0 * ONE}, {"motor_speed": 2.0}),
         ({"heave": 30.0 * ONE}, {"heave_velocity": 2.0}),
-        ({"groups": {"main": GroupView(11.0, 0.0 * ONE, 0.5 * LOWEST_SUM * ONE, 3e-5 * ONE)}}, {"main.pressure": 2.0}),
+        ({"groups": {"main": GroupView(11.0, 0.0 * ONE, 4e5 * ONE, 3e-5 * ONE)}}, {"main.pressure": 2.0}),
+        ({"groups": {"main": GroupView(11.0, 0.0 * ONE, 10e5 * ONE, 3e-5 * ONE)}}, {}),  # 5 bar of boost at each port
         ({"groups": {"main": GroupView(11.0, 1200e5 * ONE, 1300e5 * ONE, 3e-5 * ONE)}}, {"main.pressure": 2.0}),
         (
             {"groups": {"main": GroupView(11.0, 1e7 * ONE, 2e7 * ONE, 2.12 * 3.42e-5 * ONE)}},

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from winch_friction.commissioning.check import lone_units
-from winch_friction.commissioning.kinematics import MOST_BEYOND, range_score
+from winch_friction.commissioning.kinematics import range_score
 from winch_friction.commissioning.likeliest import likeliest_mistake
 from winch_friction.commissioning.mistakes import fixed_mistakes
 from winch_friction.commissioning.summaries import summaries
@@ -60,7 +60,7 @@ def test_one_channel_far_beyond_the_machine_does_not_outweigh_every_other_sign()
     group = SimpleNamespace(
         drop=np.full(9, 1e7), pressure_sum=np.full(9, 3e7), displacement=np.full(9, 3e-5), torque=np.zeros(9), count=3.0
     )  # fmt: skip
-    assert range_score(seen(np.full(9, 1e12), groups={"main": group})) == MOST_BEYOND
+    assert range_score(seen(np.full(9, 1e12), groups={"main": group})) == 400.0
 
 
 def ports(name, port_a, port_b):

@@ -1,7 +1,9 @@
 """What tells how large a speed is, and what the first line of a check says where only that is wrong."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
+import numpy as np
 import pytest
 
 from winch_friction.commissioning.check import quick_check
@@ -32,6 +34,17 @@ def test_a_measured_torque_tells_no_speed(name):
     heavy = replace(crane, inertia=1e4 * crane.inertia)
     slow, quick = (tells_speed(views_of([(run, each)])[0], each) for each in (crane, heavy))
     assert (slow, quick) == (False, True)
+
+
+@pytest.mark.parametrize(("inertia", "told"), [(0.1, False), (0.3, True)])
+def test_an_inertia_of_a_fiftieth_of_the_torque_tells_the_speed(inertia, told):
+    """100 rad/s^2 to and fro, of 0.1 and 0.3 kg m^2, beside 1000 N m: 1 % and 3 % of it."""
+    to_and_fro = np.resize([100.0, -100.0], 20)
+    drive = 1000.0 * np.sign(to_and_fro)
+    view = SimpleNamespace(rates={}, inertia=inertia, acceleration=to_and_fro, drive_torque=drive)
+    crane = SimpleNamespace(drive=SimpleNamespace(kind="electric"))
+    assert tells_speed(view, crane) == told
+    assert tells_speed(SimpleNamespace(rates={"wire_out": to_and_fro}), crane)
 
 
 def test_one_run_that_leaves_the_balance_open_is_not_one_of_them():

@@ -688,3 +688,25 @@ def test_a_torque_that_looks_ahead_may_push_against_the_measured_motion_for_as_m
     outs = [each.step(replace(ahc_sample(t, 100.0), motor_speed=-100.0)) for t in turned]
     held = next(t for t, out in zip(turned, outs, strict=True) if out.friction_torque == 0.0) - began
     assert held == pytest.approx(lead + LONGEST_LAG + LONGEST_AGAINST, abs=2.5 * PERIOD)
+
+
+def test_after_a_reset_nothing_of_what_was_before_is_known():
+    """100 rad/s^2 with a lead of 0.1 s: 10 rad/s ahead of what is measured, and none once that was forgotten."""
+    each = compensator(lead=0.1)
+    for time in np.arange(0.0, 1.0, PERIOD):
+        out = each.step(ahc_sample(time, 100.0 * time))
+    assert out.speed == pytest.approx(100.0 * time + 10.0, abs=0.5)
+    assert (each.status()["state"], each.status()["drum_torque"]) == ("active", CRANE.drum_torque(55e3))
+    each.reset()
+    assert (each.status()["state"], each.status()["drum_torque"]) == ("waiting", 0.0)
+    assert each.step(ahc_sample(1.0, 100.0)).speed == 100.0
+
+
+@pytest.mark.parametrize("bound", [math.inf, math.nan])
+def test_a_seed_that_bounds_nothing_is_no_model(bound, monkeypatch):
+    """A torque is a number, and what it may be at most is none: what was published ends."""
+    each = compensator()
+    outputs, time = run_up(each)
+    monkeypatch.setattr(each._seed_law, "magnitude", lambda *point: bound)
+    assert each.step(ahc_sample(time, 100.0)).valid is False
+    assert each.lost == ("finite model",)

@@ -152,3 +152,23 @@ def test_what_is_held_before_a_reversal_goes_as_quickly_whichever_way_it_pushes(
     assert held == pytest.approx(way * CARRIED)
     left = driven.output.remaining(driven.stamp + HOLD + 0.5 * LONGEST_AGAINST)
     assert left == pytest.approx(0.5 * way * CARRIED, rel=0.05)
+
+
+def test_a_sample_that_begins_anew_after_a_pause_is_no_step():
+    """A second by both clocks, and whoever began anew at the sample before as well gets a twentieth of one."""
+    output = SafeOutput(absolute=1000.0, slew=2000.0, ramp_time=0.5, hold=0.1)
+    output.arrive(10.0, 100.0)
+    output.restart()
+    output.arrive(11.0, 101.0)
+    output.restart()
+    assert output.arrive(12.0, 102.0) == pytest.approx(0.05)
+    output.restart()
+    assert output.arrive(12.02, 102.03) == pytest.approx(0.02)
+
+
+@pytest.mark.parametrize(("passed", "left"), [(0.05, 100.0), (0.15, 75.0), (0.25, 25.0), (0.5, 0.0)])
+def test_what_pushes_against_the_measured_motion_is_let_go_soon_after_the_longest_lag(passed, left):
+    """100 N m that have only begun to push against a motion; a healthy winch lags behind by a tenth of a second."""
+    output = SafeOutput(absolute=1000.0, slew=1e6, ramp_time=0.5, hold=1.0)
+    output.torque, output._motion, output._passed = 100.0, -50.0, passed
+    assert output._not_for_long(100.0) == pytest.approx(left)

@@ -1,5 +1,6 @@
 """What the runs must hold before anything is searched: both directions, enough of a log, and what is left out."""
 
+from contextlib import nullcontext
 from dataclasses import dataclass, replace
 from types import SimpleNamespace
 
@@ -409,3 +410,21 @@ def test_a_reversal_through_rest_is_one_and_one_load_and_displacement_are_enough
     assert found["reversals"].value == 1.0
     assert [(found[what].needed, found[what].met) for what in ("loads", "displacements")] == [(1.0, True)] * 2
     assert found["oil temperatures, span"].needed == found["reversals"].needed == 0.0
+
+
+def test_what_is_needed_and_no_more_is_enough():
+    runs = [Run("r", {"time": np.array([0.0, 1.0]), "motor_speed": np.zeros(2)})]
+    needed = {each.what: each.needed for each in of_records(runs, runs)}["longest record"]
+    exact = [Run("r", {"time": np.linspace(0.0, needed, 200), "motor_speed": np.zeros(200)})]
+    (own,) = [each for each in of_records(exact, exact) if each.what == "longest record"]
+    assert (own.value, own.met) == (needed, True)
+
+
+@pytest.mark.parametrize(("lasts", "said"), [(0.5, "lasts 0.5 s; that is no record"), (3.0, "left out: it lasts 3 s")])
+def test_rows_without_a_time_at_the_end_make_no_record_long(lasts, said):
+    time = np.concatenate([np.linspace(0.0, lasts, 51), [np.nan, np.nan]])
+    runs = [Run("r", {"time": time, "motor_speed": np.ones(53)})]
+    with pytest.raises(InputError, match=said) if lasts < 1.0 else nullcontext():
+        kept, notes = long_enough(runs)
+        assert kept == []
+        assert said in notes[0]

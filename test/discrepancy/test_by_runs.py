@@ -95,6 +95,8 @@ def test_it_is_asked_where_nothing_else_explains(monkeypatch, first, left_by_law
     assert bool(seen) is asked
     assert found.verdict == (MISSING if asked else first)
     assert tuple(found.proposals) == (() if asked or first != UNEXPLAINED else laws)  # none beside a name
+    asked_for_none = workflow.find_gap(runs, None, None, GapOptions(proposals=False))
+    assert (asked_for_none.verdict, tuple(asked_for_none.proposals)) == (first, ())
 
 
 def test_the_amount_of_a_locked_run_is_told_by_its_first_half_alone(monkeypatch):

@@ -139,6 +139,7 @@ def test_what_is_no_more_of_its_cause_is_not_tried():
         ({"hydraulic": True}, "pressures"),
         ({"blind": lambda runs: ("a faster log", "too slow")}, "a faster log"),
         ({"blind": lambda runs: None}, None),
+        ({"blind": lambda runs: None if len(runs) == 2 else ("more runs", "one is none")}, None),  # of all runs
     ],
 )
 def test_what_runs_cannot_show_says_what_it_needs(more, needs):

@@ -130,6 +130,14 @@ def test_a_bow_shows_between_three_displacements_of_the_driving_side_that_lie_ap
     assert (feedback._few_strokes(runs) is None) is told
 
 
+def test_an_s_shows_between_four_displacements_that_lie_apart():
+    """Two amounts and a zero go through any three."""
+    (law,) = [each for each in feedback.feedback_candidates() if each.law_name == "bends twice over the stroke"]
+    runs = [swung(share) for share in (0.3, 0.5, 0.7, 0.9)]
+    assert law.blind(runs[:3]) == ("more displacements", "a bow or an S shows between 4 displacements that lie apart")
+    assert law.blind(runs) is None
+
+
 def test_a_bow_is_a_gain_against_a_curvature_that_bends_what_the_gain_has_made():
     """Right at both ends: at half a stroke of 2e-5 a bow of 1e-6 is a gain of a fifth."""
     sides = Sides(SimpleNamespace(max_displacement=2e-5), ("main",), ())

@@ -67,6 +67,13 @@ def test_a_radius_error_becomes_metres_on_the_layers_concerned(layer, values):
     assert {each.layers[0]: each.value for each in found} == pytest.approx(values)
 
 
+def test_a_layer_that_is_a_hair_below_its_number_is_that_layer():
+    """On the grid of a run a layer lies between two samples at times, and rounding leaves less than a whole."""
+    own = run()
+    own.channels["wire_layer"] = np.array([1.0, 1.9999999, 1.9999999])
+    assert [p.name for p in layers_apart([own])[0].linear] == ["e_R1", "e_R2"]
+
+
 def test_every_layer_may_have_an_error_of_its_own_where_there_is_more_than_one():
     """Of two that were off by 0.9 and 1.7 % a gain of the pressures took what both had, and a radius the other half."""
     own = run()
@@ -76,6 +83,7 @@ def test_every_layer_may_have_an_error_of_its_own_where_there_is_more_than_one()
     assert [p.name for p in layers_apart([own])[0].linear] == ["e_R1", "e_R2"]
     own.channels["wire_layer"] = np.array([1.0, 2.0, 4.0])  # of a drum of four; the third no run has
     (law,) = layers_apart([own])
+    assert law.varies_with == ("drum_torque", "wire_layer")  # of no other signal
     assert (law.name, [p.name for p in law.linear]) == ("layer_radius", ["e_R1", "e_R2", "e_R4"])
     whole = radius_columns(own, {"layer": 0.0})[:, 0]
     np.testing.assert_allclose(law.columns(own, {}), np.diag(whole))

@@ -5,10 +5,6 @@ import pytest
 
 from winch_friction.discrepancy.preparation.grid import (
     FASTEST_PERIOD,
-    LONG_RECORD,
-    MAX_WIDENING,
-    SMOOTHING_TIME,
-    SPIKE_MARGIN,
     digit_of,
     dilated,
     lagged,
@@ -62,12 +58,12 @@ def test_the_noise_of_a_record_is_that_of_a_sample_whatever_it_follows():
 
 
 def test_a_long_and_fast_record_becomes_one_of_hundredths():
-    count = LONG_RECORD + 4
+    count = 60_000 + 4
     run = Run("r", {"time": 1e-3 * np.arange(count), "motor_speed": np.arange(float(count))})
     slow = thinned(run)
     assert np.median(np.diff(slow.time)) == pytest.approx(FASTEST_PERIOD)
     assert slow.columns["motor_speed"][:2] == pytest.approx([4.5, 14.5])
-    short = Run("r", {name: values[: LONG_RECORD - 1] for name, values in run.columns.items()})
+    short = Run("r", {name: values[: 60_000 - 1] for name, values in run.columns.items()})
     assert thinned(short) is short
 
 
@@ -82,9 +78,9 @@ def test_a_coarse_encoder_is_smoothed_longer_but_not_for_ever():
     coarse = 3.0 * np.round(clean / 3.0)
     awful = clean + 20.0 * np.random.default_rng(0).standard_normal(4000)
     windows = [speed_window(each, DT) * DT for each in (clean, coarse, awful)]
-    assert windows[0] == pytest.approx(SMOOTHING_TIME, abs=DT)
+    assert windows[0] == pytest.approx(0.3, abs=DT)
     assert windows[0] < windows[1] <= windows[2]
-    assert windows[2] == pytest.approx(MAX_WIDENING * SMOOTHING_TIME, abs=2 * DT)
+    assert windows[2] == pytest.approx(3.0 * 0.3, abs=2 * DT)
 
 
 def test_a_window_is_as_long_as_the_noise_of_its_samples_asks():
@@ -92,12 +88,12 @@ def test_a_window_is_as_long_as_the_noise_of_its_samples_asks():
     widening; a winch that stands has nothing to smooth."""
     at = DT * np.arange(4000.0)
     rarely = np.round(2.0 * np.sin(0.1 * at))  # steps of 1 rad/s, one in some hundred samples
-    assert speed_window(rarely, DT) * DT > 1.3 * SMOOTHING_TIME
+    assert speed_window(rarely, DT) * DT > 1.3 * 0.3
     noisy = 100.0 * np.sin(at) + 0.8 * np.random.default_rng(1).standard_normal(4000)
-    assert speed_window(noisy, DT) * DT == pytest.approx(2.52 * SMOOTHING_TIME, rel=0.05)
-    assert speed_window(noisy, DT / 4.0) * DT / 4.0 == pytest.approx(1.587 * SMOOTHING_TIME, rel=0.05)
-    assert speed_window(np.zeros(4000), DT) * DT == pytest.approx(SMOOTHING_TIME, abs=DT)
-    assert speed_window(np.array([1.0, 2.0]), DT) * DT == pytest.approx(SMOOTHING_TIME, abs=DT)
+    assert speed_window(noisy, DT) * DT == pytest.approx(2.52 * 0.3, rel=0.05)
+    assert speed_window(noisy, DT / 4.0) * DT / 4.0 == pytest.approx(1.587 * 0.3, rel=0.05)
+    assert speed_window(np.zeros(4000), DT) * DT == pytest.approx(0.3, abs=DT)
+    assert speed_window(np.array([1.0, 2.0]), DT) * DT == pytest.approx(0.3, abs=DT)
 
 
 # -- spikes
@@ -110,7 +106,7 @@ def spiky(*places, rest=0):
 
 
 def test_a_spike_is_left_out_with_its_surroundings():
-    margin = int(SPIKE_MARGIN / DT)
+    margin = int(0.1 / DT)
     assert spiky(700).tolist() == list(range(700 - margin, 700 + margin + 1))
 
 

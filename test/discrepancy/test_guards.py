@@ -6,6 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from winch_friction.discrepancy import outdone as outdone_module
 from winch_friction.discrepancy import several as several_module
 from winch_friction.discrepancy import standing as standing_module
 from winch_friction.discrepancy import workflow as workflow_module
@@ -1235,3 +1236,22 @@ def test_a_set_that_leaves_out_more_names_than_it_has_room_for_is_no_answer(monk
     assert not asked.met
     assert said in asked.sentence
     assert supplying([asked]) == "experiment_loads"
+
+
+@pytest.mark.parametrize(
+    ("names", "at_floor", "closed"),
+    [((), True, False), (("a",), True, True), (("a", "b"), True, False), (("a",), False, False)],
+)
+def test_what_one_law_does_is_asked_of_a_single_name_otherwise_once_it_closes_the_locked_runs(
+    names, at_floor, closed, monkeypatch
+):
+    told = []
+    slots = tuple(Slot(name, "", (k,)) for k, name in enumerate(names))
+    search = SimpleNamespace(
+        explanation=SimpleNamespace(slots=slots), cross=None, selection=SimpleNamespace(final=None)
+    )
+    monkeypatch.setattr(outdone_module, "_closed", lambda trial, rng: at_floor)
+    monkeypatch.setattr(outdone_module, "_asked", lambda near, cross, named, closed: told.append(closed) or [])
+    monkeypatch.setattr(outdone_module, "outdone", lambda laws, cross, selection, closed: told.append(closed) or "why")
+    assert outdone_module.one_law(SimpleNamespace(search=search), (), None) == "why"
+    assert told == [closed, closed]

@@ -401,3 +401,17 @@ def test_a_run_whose_pressure_never_moves_says_nothing_of_air(swing, segments):
     found = flow_balance._sums(Run("rest", columns), prepared, 0, slice(0, 2000))
     assert bool(len(found)) is segments
     assert np.isfinite(found).all()
+
+
+@pytest.mark.parametrize(("stated", "full"), [(0.0, 3e-5), (3.4e-5, 3.4e-5)])
+def test_lost_speed_is_of_the_displacement_that_motors_have_at_most_in_any_run(monkeypatch, stated, full):
+    """As the crane file has it, or where it has none as far as they were swung out in all of the runs."""
+
+    def own(displacement):
+        group = SimpleNamespace(balances=True, displacement=np.array([1e-5, displacement]))
+        return SimpleNamespace(constants=(("max_displacement", stated),), groups=[group])
+
+    monkeypatch.setattr(flow_balance, "_tables", lambda *_: "table")
+    monkeypatch.setattr(flow_balance, "_enough", lambda table: True)
+    monkeypatch.setattr(flow_balance, "leakage_of", lambda table, change, full: (table, change, full))
+    assert flow_balance.lost_speed([], [own(2e-5), own(3e-5)]) == ("table", lost_flow.STEADY_COMMAND, full)

@@ -7,8 +7,9 @@ import numpy as np
 import pytest
 
 from winch_friction.cli.gap_output import _found_as, _parameters, show_result
+from winch_friction.discrepancy import workflow
 from winch_friction.discrepancy.adequacy import Check, _divided, of_names
-from winch_friction.discrepancy.answer import Side
+from winch_friction.discrepancy.answer import MISSING, UNEXPLAINED, Side
 from winch_friction.discrepancy.engine.blocks import Slot
 from winch_friction.discrepancy.engine.chance import Size
 from winch_friction.discrepancy.engine.selection import TAKEN, Considered, Finding, Selection
@@ -109,3 +110,38 @@ def test_runs_without_a_layer_are_counted_as_they_were_given():
     runs = [replace(run, columns=run.columns | {f"main.{each}": np.ones(11) for each in groups}) for run in RUNS]
     for given, said in ((runs, "3 runs"), (runs[:1], "1 run")):
         assert _notes(_divided(given, 0.5).runs, {}) == (f"no wire_layer in {said}: the outer layer is assumed",)
+
+
+@pytest.mark.parametrize(("final", "kind"), [(True, MISSING), (False, MISSING), (True, UNEXPLAINED)])
+def test_a_result_has_the_names_that_its_file_has_and_says_with_what_the_rest_goes(monkeypatch, final, kind):
+    """Where another explanation than the selection's was fitted, what the selection found is not in the file."""
+    depends = lambda name, p_value, share: SimpleNamespace(signal=name, p_value=p_value, share=share, size=9.0)
+    left = (depends("chance", 0.9, 0.5), depends("sure", 0.0, 0.5), depends("of nothing", 0.0, 0.0))
+    told = {}
+    finding = SimpleNamespace(slot=SimpleNamespace(name="wear_drift"))
+    selection = SimpleNamespace(final="final", found=(finding,))
+    cross = SimpleNamespace(problem=SimpleNamespace(matters=1.0))
+    explanation = SimpleNamespace(names=("wear_drift",))
+    selection.final = explanation if final else SimpleNamespace(names=())
+    given = SimpleNamespace(
+        prepared=(), crane=SimpleNamespace(drive=SimpleNamespace(unit="bar")), model=MODEL, loads={}
+    )
+    search = SimpleNamespace(
+        cross=cross, selection=selection, verdict=SimpleNamespace(kind=kind, refused=""), given=given,
+        explanation=explanation, left=left, untestable=(),
+    )  # fmt: skip
+    repaired = SimpleNamespace(model=MODEL, cut=())
+    trial = SimpleNamespace(search=search, repaired=repaired, train="train", holdout="holdout", levels="")
+    for name, answer in (
+        ("_company", SimpleNamespace(partners=(), no_room=())), ("drift_note", ""), ("unexplained_share", 0.0),
+        ("_in_the_end", ()), ("_concluded", MODEL), ("_notes", ()), ("_amounts", ()), ("_times", ()),
+    ):  # fmt: skip
+        monkeypatch.setattr(workflow, name, lambda *_, answer=answer: answer)
+    monkeypatch.setattr(workflow, "_effects", lambda search, found, repaired, tied: tuple(found))
+    monkeypatch.setattr(workflow, "_inexact", lambda side, goes_with, unit: told.update(goes=goes_with) or ["inexact"])
+    monkeypatch.setattr(workflow, "GapResult", SimpleNamespace)
+    study = SimpleNamespace(split=SimpleNamespace(runs=()), options=SimpleNamespace(plan=False))
+    result = workflow.assemble(study, trial)
+    assert result.effects == ((finding,) if final else ())
+    assert told == ({"goes": ["sure"]} if final else {})
+    assert ("inexact" in result.notes) is final

@@ -269,6 +269,17 @@ def test_a_displacement_that_is_set_anew_is_followed_and_a_steady_one_smoothed(n
     assert np.std(found[steady] - true[steady]) <= 0.4 * noise + 1e-12
 
 
+def test_a_feedback_is_nowhere_off_what_was_logged_by_more_than_four_times_its_noise():
+    """Which is a fifty-hundredth of it at least, 2e-4; a step of twenty times that was rounded by half of itself."""
+    values = np.where(np.arange(400) < 200, 1.0, 1.004)
+    assert np.abs(smooth_between_steps(values, 15, 75) - values).max() <= 4.0 * 2e-4 * 1.004 + 1e-12
+
+
+def test_a_steady_feedback_is_smoothed_over_the_widest_window_as_it_was_logged():
+    values = 1.0 + 1e-3 * np.random.default_rng(1).standard_normal(600)
+    np.testing.assert_allclose(smooth_between_steps(values, 15, 75)[100:500], smooth(values, 75)[100:500], rtol=1e-12)
+
+
 @pytest.mark.parametrize("rated", [150e3, 0.0])
 def test_a_run_knows_what_its_shaft_holds_under_the_rated_load(crane_150t, crane2_model, rated):
     """On the outermost layer, over the gear; nothing where nobody rates the crane."""

@@ -227,3 +227,24 @@ def test_what_comes_once_is_no_period(span):
     """A friction that grew while it ran came "periodically, every 54.3 m", of a wire of which 55 m came and went."""
     periods = {each["c"] for each in vocabulary._constants("wave", vocabulary.WORDS[0], (1.0,), span)}
     assert periods == {each for each in vocabulary.PERIODS if each <= 0.5 * span}
+
+
+def test_a_signal_is_read_as_its_symbol_says():
+    """Speed, acceleration and pressure by their size; the drum turns once in so many turns of the motor."""
+    one = np.array([-3.0, 4.0])
+    run = SimpleNamespace(speed=one, drum_torque=one, acceleration=one, time=one, angle=250.0 * one, gear_ratio=250.0,
+                          channels=dict.fromkeys(("oil_temperature", "wire_out", "wire_layer"), one))  # fmt: skip
+    group = SimpleNamespace(displacement=one, pressure=one)
+    read = {word.name: (word.of_run(run) if word.of_run else word.of_group(group)).tolist() for word in WORDS}
+    by_size = {name for name, values in read.items() if values == [3.0, 4.0]}
+    assert by_size == {"motor_speed", "acceleration", "pressure"}
+    assert all(values == [-3.0, 4.0] for name, values in read.items() if name not in by_size)
+
+
+def test_a_count_is_asked_at_whole_numbers_and_a_size_at_tenths_of_the_samples():
+    layers = np.repeat([1.0, 2.0, 4.0], 50)
+    knots = {c for each in factors(vocabulary.BY_NAME["wire_layer"], layers) for _, c in each.constants}
+    assert knots == {1.0, 2.0, 4.0}
+    speeds = {c for each in factors(vocabulary.BY_NAME["motor_speed"], np.linspace(0.0, 100.0, 1001))
+              if each.kind == "above" for _, c in each.constants}  # fmt: skip
+    assert speeds == {10.0 * k for k in range(1, 10)}

@@ -20,3 +20,10 @@ def test_lag_is_settled_before_the_first_sample():
     expected = lfilter(*weights, x, zi=lfilter_zi(*weights) * x[0])[0]
     np.testing.assert_allclose(lagged(x, 0.02, 3.0), expected, atol=1e-10)
     assert lagged(np.full(4, 7.0), 0.02, 3.0).tolist() == [7.0] * 4
+
+
+def test_a_weight_may_be_another_at_every_sample():
+    """y_k = x_k - a_k y_(k-1) - b_k y_(k-2), by hand from rest."""
+    a, b, x = np.array([9.0, -0.5, 0.25, -2.0]), np.array([9.0, 9.0, 0.5, -1.0]), np.array([2.0, 1.0, 0.0, 3.0])
+    # 2, 1 + 1 = 2, 0 - 0.5 - 1 = -1.5, 3 - 3 + 2 = 2
+    assert recursive((a, b), x.copy()).tolist() == [2.0, 2.0, -1.5, 2.0]

@@ -73,3 +73,23 @@ def test_what_stands_is_asked_of_its_file_where_names_and_a_reversal_are_in_it(m
     monkeypatch.setattr(standing, "by_reversals", lambda study, own, shown, _: held if shown == "bristles" else own)
     study = SimpleNamespace(rng=None, split=None)
     assert standing._borne_out(study, search) is (held if asked else full)
+
+
+@pytest.mark.parametrize(("ripple", "flow"), [(None, ()), ("wave", ()), (None, ("air",)), ("wave", ("air",))])
+def test_names_are_judged_beside_a_refit_that_has_what_is_in_every_file(monkeypatch, ripple, flow):
+    """A ripple and lost oil: of these no name takes anything off the locked gap."""
+    empty = SimpleNamespace(slots=())
+    search = SimpleNamespace(selection=SimpleNamespace(final=empty, untold=""), explanation=empty, reversal=None,
+                             ripple=ripple, flow=flow)  # fmt: skip
+    changed = lambda own, **more: SimpleNamespace(**{**vars(own), **more})
+    judged = []
+    monkeypatch.setattr(standing, "replace", changed)
+    monkeypatch.setattr(standing, "_replicated", lambda own, *_: own)
+    monkeypatch.setattr(standing, "nameless", lambda own: changed(own, ripple=None, flow=()))
+    monkeypatch.setattr(standing, "tried", lambda study, own: SimpleNamespace(search=own))
+    monkeypatch.setattr(standing, "_sets", lambda own, _: [own])
+    monkeypatch.setattr(
+        standing, "_stands", lambda own, beside, trial_of, _: judged.append(beside.search) or (trial_of(own), "")
+    )
+    standing._borne_out(SimpleNamespace(rng=None, split=None), search)
+    assert [(each.ripple, each.flow) for each in judged] == [(ripple, flow)]

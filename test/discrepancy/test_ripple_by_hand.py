@@ -96,6 +96,15 @@ def test_a_runs_inertia_acceleration_and_static_torque_are_those_at_the_motor(mo
     assert (own.moving == (TIME > 1.0)).all()
 
 
+def test_a_row_without_a_time_is_no_instant_of_a_run(monkeypatch):
+    run, prepared, crane = logged()
+    at = np.where(np.arange(SIZE) == 70, np.nan, run.time)
+    monkeypatch.setattr(module, "run_drive_torque", lambda run, crane: TIME)
+    own = AsLogged(Run("r", run.columns | {"time": at}), prepared, crane)
+    assert own.torque.tolist() == own.of(TIME).tolist() == np.delete(TIME, 70).tolist()
+    assert np.isfinite(own.acceleration).all()
+
+
 @pytest.mark.parametrize(("terms", "inertia"), [((), False), ((), True), (("torque_ripple",), True)])
 def test_what_is_looked_at_is_the_fast_torque_without_what_is_known_of_it(monkeypatch, terms, inertia):
     """A fast wave beside what inertia takes and what the model's own ripple is; what is slower than a window goes."""
@@ -206,16 +215,16 @@ def test_a_wave_that_is_taken_out_of_a_run_leaves_what_else_its_gap_has():
     assert found.gap == pytest.approx(5.0 * np.cos(angle))
 
 
-def shared(monkeypatch, *phases, order=7.0, present=("shaft_angle",)):
+def shared(monkeypatch, *phases, order=7.0, present=("shaft_angle",), beside=()):
     """Runs with a wave of 2e-3 of 4 kN m each, of these phases; their line was seen a little beside it."""
     angle = np.linspace(0.0, 300.0, 3000)
-    beside, static = 0.1 * np.cos(31.0 * angle), np.full(3000, 4e3)
-    tables = iter([(angle, 8.0 * np.sin(order * angle + phase) + beside, static) for phase in phases])
+    other, static = 0.1 * np.cos(31.0 * angle), np.full(3000, 4e3)
+    tables = iter([(angle, 8.0 * np.sin(order * angle + phase) + other, static) for phase in phases])
     monkeypatch.setattr(ripple_waves, "_unsmoothed", lambda *_: next(tables))
     runs = [SimpleNamespace(used=np.ones(3, bool), drum_torque=np.ones(3), present=frozenset(present)) for _ in phases]
     runs[0].present = frozenset({"shaft_angle"})
     line = Ripple(order + 0.01, 1e-3, 1e-5, 1e-12, 9.0)
-    return ripple_waves.in_phase(runs, runs, None, line)
+    return ripple_waves.in_phase([*runs, *beside], [*runs, *beside], None, line)
 
 
 @pytest.mark.parametrize("phase", [0.0, 1.1, -2.0])
@@ -236,6 +245,12 @@ def test_runs_share_a_ripple_where_one_phase_explains_seven_tenths_of_what_their
 
 def test_a_phase_is_one_only_where_every_run_logged_its_angle(monkeypatch):
     assert shared(monkeypatch, 0.0, 0.0, present=()) is None
+
+
+@pytest.mark.parametrize(("used", "drum_torque"), [(False, 1.0), (True, 0.0)])
+def test_a_run_that_rests_or_hangs_nothing_has_no_phase_to_share(monkeypatch, used, drum_torque):
+    idle = SimpleNamespace(used=np.full(3, used), drum_torque=np.full(3, drum_torque), present=frozenset())
+    assert shared(monkeypatch, 0.0, 0.0, beside=[idle])["k_r"].value == pytest.approx(7.0, abs=1e-4)
 
 
 @pytest.mark.parametrize("inertia", [False, True])

@@ -5,6 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from winch_friction.discrepancy.candidates import feedback
 from winch_friction.discrepancy.candidates import signals as module
 from winch_friction.discrepancy.candidates.candidate import (
     ALL,
@@ -152,6 +153,22 @@ def test_a_creep_is_looked_for_over_days_and_runs_enough(hours, creeps, gathers)
 def test_a_bow_is_looked_for_over_warmth_enough(degrees, untold):
     runs = [run(oil_temperature=30.0 + k * degrees) for k in range(2)]
     assert blind("thermal zero that bends", *runs) is untold
+
+
+def test_a_zero_that_bends_with_the_oil_becomes_a_zero_a_slope_and_a_bow():
+    (law,) = [each for each in signal_candidates() if each.law_name == "thermal zero that bends"]
+    found = {
+        name: ParameterEstimate(size, 0.1 * size, "Pa") for name, size in (("p_0", 3e4), ("p_T", 400.0), ("p_TT", 5.0))
+    }
+    told = law.corrects(found, Shape("", {"groups": 0.0}), Sides(None, ("active",), ("passive",)))
+    assert {each.name: each.value for each in told} == {
+        "pressure_offset": 3e4, "pressure_thermal_zero": 400.0, "pressure_thermal_bow": 5.0,
+    }  # fmt: skip
+
+
+def test_a_gain_of_the_transducers_is_of_a_per_cent_and_of_two_where_it_is_another_beyond_a_pressure():
+    """The sizes by which a found one is called plausible."""
+    assert (module.e_p.typical, feedback.b_p.typical) == (0.01, 0.02)
 
 
 # -- delays

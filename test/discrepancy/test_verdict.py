@@ -236,7 +236,7 @@ def test_the_share_that_no_name_explains_is_one_of_what_lies_above_the_noise(kin
 
 
 # -- by figures of its own
-def found_are(*slots, rivals=(), before=None, after=None, depends=(), beyond=()):
+def found_are(*slots, rivals=(), before=None, after=None, depends=(), beyond=(), untold=""):
     """The verdict on these slots, of which the names in `beyond` are at their bound and in `rivals` have another."""
     found = [SimpleNamespace(slot=own, rivals=("other",) * (own.name in rivals)) for own in slots]
 
@@ -246,11 +246,20 @@ def found_are(*slots, rivals=(), before=None, after=None, depends=(), beyond=())
     cross = crossed()
     cross.at_bound = lambda _, slot: slot.name in beyond
     base, final = (left(4.0, 4.0) if before is None else before), (left(0.0, 0.0) if after is None else after)
-    return decide(cross, SimpleNamespace(base=base, final=final.view(Final), found=found, untold=""), list(depends))
+    return decide(cross, SimpleNamespace(base=base, final=final.view(Final), found=found, untold=untold), list(depends))
 
 
 A, B, C = (Slot(name, "", (), most=6.0) for name in ("a", "b", "c"))
 LAW = replace(B, law="another")
+
+
+def test_a_name_that_many_others_do_as_well_as_is_refused_for_that_alone():
+    """Whoever asks once more asks for the levels of runs where nothing else speaks against the name."""
+    verdict = found_are(A, untold="five others do as well")
+    assert (verdict.kind, verdict.refused, verdict.untold, verdict.leaves) == (
+        UNEXPLAINED, "five others do as well", True, False,
+    )  # fmt: skip
+    assert not found_are(A, after=left(4.0, 4.0), untold="five others do as well").untold
 
 
 @pytest.mark.parametrize(

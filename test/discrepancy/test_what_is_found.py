@@ -254,7 +254,8 @@ def test_what_begins_otherwise_is_taken_where_it_leaves_less(monkeypatch, togeth
 
     monkeypatch.setattr(module, "_forward", forward)
     monkeypatch.setattr(module, "_whole", lambda cross, own, rng, apart: own)
-    monkeypatch.setattr(module, "_plain_together", lambda *_: start)
+    # from nothing: what was found one by one is what plain effects all together are held against
+    monkeypatch.setattr(module, "_plain_together", lambda cross, begun, rng: start if begun is base else base)
     monkeypatch.setattr(module, "other_start", lambda *_: None if anew is None else explained((TWO,), 2.0))
     monkeypatch.setattr(module, "far_less", lambda cross, new, old: new.loss <= 0.5 * old.loss)
     monkeypatch.setattr(

@@ -604,3 +604,12 @@ def test_a_map_is_open_while_it_asks_but_not_by_what_contradicted_the_crane():
     refuse_if_open(LogMap({}, questions=("crane: the load is beyond it",)), "m.yaml")
     with pytest.raises(InputError, match=r"^m.yaml: hook_load: t\? \| time: zone\? \(answer by"):
         refuse_if_open(LogMap({}, questions=("hook_load: t?", "crane: no", "time: zone?")), "m.yaml")
+
+
+def test_a_change_of_a_draft_adds_its_reason_and_may_leave_no_confidence_at_all():
+    made = draft(hook_load=Entry("load", confidence=0.9, because="its name"))
+    made.change("hook_load", unit="t")
+    assert made.log_map.columns["hook_load"] == Entry("load", "t", confidence=0.9, because="its name")
+    made.change("hook_load", 0.0, "nothing closes")
+    entry = made.log_map.columns["hook_load"]
+    assert (entry.confidence, entry.because, entry.unit) == (0.0, "its name; nothing closes", "t")

@@ -86,3 +86,29 @@ def test_names_may_stand_above_columns_without_a_value_for_long():
     assert find_layout(wide, ".").names == 0
     wide[0][4] = ""
     assert find_layout(wide, ".").names == -1  # a note beside the table
+
+
+@pytest.mark.parametrize("labels", [["Port"], ["Port", "Size"], ["Port", "Size", "Kind", "Rate"]])
+def test_every_row_of_a_programs_head_is_above_the_values(labels):
+    """Each of them has numbers, behind labels; of several the first one was taken for the first row of values."""
+    names, head = ["Name", "speed", "Name", "load"], [[label, "851", label, "8"] for label in labels]
+    values = [[str(k), f"{0.1 * k:.1f}", str(k), f"{0.3 * k:.1f}"] for k in range(40)]
+    found = find_layout([names, *head, *values], ".")
+    assert (found.names, found.first) == (0, 1 + len(labels))
+
+
+@pytest.mark.parametrize(("names", "asked"), [(["rope speed [m/s]", "motor speed [rpm]"], False),
+                                              (["rope speed [m/s]", "oil temperature [degC]"], True)])  # fmt: skip
+def test_a_ropes_speed_without_a_crane_is_asked_about_where_no_motors_is_there(names, asked, tmp_path):
+    speed = np.sin(0.1 * np.arange(100))
+    table = [
+        ["time [s]", *names],
+        *([f"{0.1 * k:.1f}", f"{v:.3f}", f"{40.0 + 9 * v:.2f}"] for k, v in enumerate(speed)),
+    ]
+    made = propose([write_text(tmp_path / "log.csv", table)], None, None)
+    assert any("is a speed of the rope; give --crane" in each for each in made.log_map.questions) == asked
+
+
+def test_columns_of_words_are_no_head_however_long_they_last():
+    rows = [["time", "state", "mode", "speed"], *([f"{0.02 * k:.2f}", "OFF", "AHC", f"{k}.5"] for k in range(40))]
+    assert find_layout(rows, ".").first == 1

@@ -1,12 +1,15 @@
 """Rows of a text log and of a workbook's sheet, from made-up lines and cells: their lines, heads, units and ends."""
 
 import zipfile
+from contextlib import nullcontext
 from pathlib import Path
 from types import SimpleNamespace
 
+import numpy as np
 import pytest
 
-from winch_friction.importing import workbook_sheets
+from winch_friction.importing import text_columns, text_log, workbook_log, workbook_sheets
+from winch_friction.importing.log import LogColumn
 from winch_friction.importing.text_rows import SEEN, TextRows
 from winch_friction.importing.workbook_sheets import ROWS_PEEKED, _as_openpyxl, _rows_of, refuse_bombs
 from winch_friction.physics.errors import InputError
@@ -112,3 +115,28 @@ def test_a_book_is_opened_for_its_values_or_for_its_formulas(values, monkeypatch
     monkeypatch.setattr(workbook_sheets, "library", lambda *_: library)
     workbook_sheets.open_book(Path("a.xlsx"), values)
     assert asked == [{"read_only": True, "data_only": values}]
+
+
+@pytest.mark.parametrize(("cells", "sideways"), [(1200, False), (1600, True)])
+def test_a_table_lies_on_its_side_where_its_rows_have_ten_times_as_many_cells_as_there_are_rows(cells, sideways):
+    """150 rows: of more than 1000 cells each, and of more than 1500."""
+    lines = [";".join([f"channel {k}", *["1.5"] * (cells - 1)]) for k in range(150)]
+    with pytest.raises(InputError, match="the channels stand in rows") if sideways else nullcontext():
+        text_log._refuse_channels_in_rows(Path("log.csv"), lines, ";")
+
+
+def test_a_row_has_as_many_cells_as_the_table_is_wide():
+    assert text_columns.padded(["1", "2", "3"], 2) == ["1", "2"]
+    assert text_columns.padded(["1"], 3) == ["1", "", ""]
+
+
+@pytest.mark.parametrize("cell", ["=A1", 5.0])
+def test_a_workbook_that_was_opened_for_its_formulas_is_closed(cell, monkeypatch):
+    closed = []
+    sheet = SimpleNamespace(iter_rows=lambda *place, **more: [(cell,)])
+    book = type("Book", (dict,), {"close": lambda self: closed.append(True)})(Data=sheet)
+    monkeypatch.setattr(workbook_log, "open_book", lambda path, values: book)
+    column = LogColumn("load", np.array([1.0, np.nan]))
+    said = workbook_log._formulas_without_values(Path("log.xlsx"), "Data", [column], [2, 3])
+    assert closed == [True]
+    assert len(said) == (cell == "=A1")

@@ -183,6 +183,15 @@ def test_two_times_that_agree_are_one(second, name, tmp_path, crane_150t):
     assert not [each for each in found.problems if "tell two times" in each]
 
 
+def test_a_clock_beside_the_time_may_have_cells_that_tell_none(tmp_path, crane_150t):
+    """It is only held against the one that is taken."""
+    second = lambda s: "read error" if 2.0 < s < 2.1 else f"2026-03-01 10:{int(s) // 60:02d}:{s % 60.0:06.3f}"
+    log = two_clocks(tmp_path, second, "time_plc")
+    log.write_bytes(b"".join(log.read_bytes().splitlines(keepends=True)[:400]))
+    found = propose([log], crane_150t, "crane_150t", ("time.from=Zeit",))
+    assert found.log_map.time_from == ("Zeit",)
+
+
 ZEIT = 1_772_359_200.0  # s since 1970 of the example's first row
 
 

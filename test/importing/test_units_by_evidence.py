@@ -204,6 +204,14 @@ def test_what_the_balance_does_not_tell_is_asked_once_for_all_ports(monkeypatch)
     assert (warm.questions, warm.log_map.columns["oil_temperature"].unit) == ([], "degC")  # moves no torque
 
 
+@pytest.mark.parametrize(
+    "name", ["motor_speed", "drum_speed", "main.displacement", "hook_load", "rope_force", "mechanical_power"]
+)
+def test_a_unit_that_moves_torque_or_speed_is_asked_where_the_log_does_not_tell_it(name, monkeypatch):
+    own = settled(monkeypatch, {name: ["x", "y"]}, {"y": 0.5}, **{name.replace(".", "__"): Entry("c", confidence=1.0)})
+    assert own.questions == [f"{name}: 'c' says no unit, and the log does not tell x from y; set {name}.unit"]
+
+
 def test_a_unit_that_may_mean_several_is_left_to_who_asks_for_it(monkeypatch):
     own = draft("crane", [], hook_load=Entry("m", "ton"))
     monkeypatch.setattr(unit_guess, "_options", lambda *_: pytest.fail("asked"))

@@ -53,6 +53,7 @@ def test_a_name_is_cut_into_folded_words(name, words):
         ("Hydraulikölltemperatur", [{"oil": 0.95}, {"temperature": 0.95}]),
         ("Windengeschwindigkiet", [{"winch": 0.95}, {"speed": 0.95}]),  # the second word misspelt
         ("druckhakenlast", [{"pressure": 0.95}, {"load": 0.95}]),
+        ("oiltemperature", [{"oil": 0.95}, {"temperature": 0.95}]),  # a head of three letters is a word
         ("Motortrommeldruck", [{"motor": 0.95}, {"drum": 0.95}, {"pressure": 0.95}]),
         ("DRUCKA", [{"pressure": 0.95}, {"port_a": 0.95}]),
         ("pressureb", [{"pressure": 0.95}, {"port_b": 0.95}]),

@@ -420,6 +420,17 @@ def test_what_came_before_the_first_speed_is_held_unless_it_is_stamped_beyond_th
     assert math.isfinite(fed.service.inputs.hold.stamp("active.pressure_a", math.inf)) is kept
 
 
+def test_gates_that_begin_anew_hold_nothing_and_believe_any_stamp():
+    fed = Fed()
+    fed.run(0.1)
+    gate = fed.service.inputs
+    assert math.isfinite(gate.hold.stamp("active.pressure_a", math.inf))
+    assert not gate._near(START + 3600.0, fed.now)
+    gate.forget()
+    assert math.isnan(gate.hold.stamp("active.pressure_a", math.inf))
+    assert gate._near(START + 3600.0, fed.now)
+
+
 def test_what_is_missing_without_a_speed_is_told_with_the_reason_where_some_still_come():
     gate = service().inputs
     arrivals = gate.arrivals[TOPICS.speed_topic]
@@ -628,6 +639,24 @@ def test_what_is_no_gain_to_begin_with_is_compared_with_nothing(inertia, coulomb
     balance, first = gained(inertia, coulomb, 0.5)
     assert first is balance._first is None
     assert gained(1.0, 100.0, 0.5, on=balance)[1] is False  # and begins once it is one
+
+
+def test_a_gain_is_looked_for_once_a_second(monkeypatch):
+    balance, looked = InertiaBalance(CRANE), []
+    monkeypatch.setattr(balance, "_look", lambda sample: looked.append(round(sample.time, 1)))
+    for k in range(36):
+        balance.contradiction(row(1000.0 + 0.1 * k))
+    assert looked == pytest.approx([1000.0, 1001.0, 1002.0, 1003.0], abs=0.11)
+
+
+def test_an_estimator_tells_motion_from_rest_at_the_speed_of_its_motors():
+    """5 rad/s; of a motor on the drum that is rated for 10 rad/s, a tenth of the 100 of quick ones, half a rad/s."""
+    for rated, least in ((10.0, 0.5), (CRANE.rated_speed, 5.0)):
+        own = SimpleNamespace(
+            law=SimpleNamespace(crane=replace(CRANE, rated_speed=rated)), inputs=SimpleNamespace(ranges=RANGES)
+        )
+        EstimatorService._watch_loads(own)
+        assert [own._balance._moving, own._still._moving] == pytest.approx([least, least])
 
 
 def test_a_step_of_the_balance_is_what_the_smoothed_signals_do_by_hand():

@@ -44,6 +44,12 @@ def test_neither_is_believed_again_before_the_torque_has_gone():
     assert not voices.contradict(SPEED, message(50.0, 10.3), 100.0)
 
 
+def test_a_copy_is_held_against_the_message_before_it():
+    voices = Voices(ChannelRanges(CRANE, TOPICS.groups))
+    told = [voices.contradict(SPEED, message(100.0, 10.0 + 0.02 * k), 100.0 + 0.02 * k) for k in range(3)]
+    assert [*told, voices.contradict(SPEED, message(-100.0, 10.04), 100.041)] == [False, False, False, True]
+
+
 # -- a recording or a simulator that sends beside the machine
 OFFSETS = [0.0, 0.3, -0.3, -3600.0, 3600.0]  # s between the two clocks
 

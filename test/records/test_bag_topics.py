@@ -268,3 +268,12 @@ def test_a_receipt_is_the_nearest_nanosecond(tmp_path):
     writer.write("/t", MESSAGES.make(FLOAT64, data=1.0), 0.29)  # 289 999 999.99999994 ns
     assert sent[0][3] == 290_000_000
     assert np.frombuffer(sent[0][2], np.float64, offset=4).tolist() == [1.0]
+
+
+def test_a_recording_is_made_beside_its_place(tmp_path):
+    """On the same disk: a move from another one would be a copy, of which a reader sees half."""
+    with BagWriter(tmp_path / "new" / "log.mcap") as writer:
+        (folder,) = (tmp_path / "new").iterdir()
+        assert folder.name.startswith(".log.mcap.")
+        writer.write_raw("/a", "std_msgs/msg/String", b"\x00\x01\x00\x00\x01\x00\x00\x00\x00", 5)
+    assert [each.name for each in (tmp_path / "new").iterdir()] == ["log.mcap"]

@@ -412,3 +412,18 @@ def test_a_refusal_names_the_file_that_is_read_now():
     for name in ("a.yaml", "b.yaml", "a.yaml"):
         with pytest.raises(InputError, match=f"{name} line 2: key 'k' stands on line 1 already"):
             parse_yaml("k: 1\nk: 2\n", name)
+
+
+def test_a_model_file_in_place_of_a_cranes_is_told_as_such_alone():
+    path = config_directory() / "models" / "a6vm215_crane2.yaml"
+    with pytest.raises(InputError) as told:
+        load_crane(path)
+    said = "this is a model file (schema 'winch_friction.model/1'), and a crane file is asked for"
+    assert str(told.value) == f"{path}: {said}"
+
+
+def test_a_key_that_stands_thrice_is_told_with_the_line_on_which_it_stood_first():
+    with pytest.raises(InputError) as told:
+        parse_yaml("a: 1\nb: 2\na: 3\na: 4\n", "here")
+    said = "key 'a' stands on line 1 already; keep one of them"
+    assert list(told.value.problems) == [f"here line 3: {said}", f"here line 4: {said}"]

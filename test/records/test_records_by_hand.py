@@ -379,3 +379,15 @@ def test_a_digit_of_a_coarse_transducer_that_stands_still_is_no_jump():
     assert not _jumping(values).any()
     values[100] = 500.0
     assert np.flatnonzero(_jumping(values)).tolist() == [100]
+
+
+def test_numbers_of_numpy_are_written_as_plain_ones_and_what_is_no_number_as_null():
+    given = {
+        1: np.float32("nan"),
+        "b": (np.int64(3), np.bool_(True)),
+        "c": np.array(np.inf),
+        "d": np.array([1.0, np.nan]),
+    }
+    found = finite(given)
+    assert found == {"1": None, "b": [3, True], "c": None, "d": [1.0, None]}
+    assert [type(each) for each in found["b"]] == [int, bool]

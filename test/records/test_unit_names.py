@@ -7,7 +7,14 @@ import pytest
 
 from winch_friction.physics.errors import InputError
 from winch_friction.records.runs import read_run
-from winch_friction.records.unit_names import AMBIGUOUS, SPELLINGS, conversion_to_si, pint_name, plain_spelling
+from winch_friction.records.unit_names import (
+    AMBIGUOUS,
+    SPELLINGS,
+    conversion_to_si,
+    known_spelling,
+    pint_name,
+    plain_spelling,
+)
 
 # unit, SI unit of the column, what one of it is, what none of it is
 KNOWN = [
@@ -220,3 +227,9 @@ def test_what_an_ambiguous_unit_may_mean_can_be_written_as_is_said(si_unit, wort
 def test_who_writes_no_unit_is_shown_the_one_that_people_write(si_unit, usual):
     with pytest.raises(InputError, match=re.escape(f"p: unit 'candela' cannot be read as {si_unit}, e.g. '{usual}'")):
         conversion_to_si("candela", si_unit, "p")
+
+
+@pytest.mark.parametrize("spelling", ["bar(g)", "kPa (abs)", "psi gauge"])
+def test_a_pressure_counted_from_somewhere_is_a_spelling_of_pressures_alone(spelling):
+    assert known_spelling(spelling, "Pa")
+    assert not any(known_spelling(spelling, other) for other in ("kg", "m", "rad/s", "N*m"))

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from winch_friction.physics.signals import Run
-from winch_friction.replay.live import AGREEMENT, Comparison, _compared
+from winch_friction.replay.live import Comparison, _compared
 
 TIMES = 1.7e9 + 0.02 * np.arange(5)
 
@@ -20,7 +20,7 @@ def live(*torque):
 
 
 @pytest.mark.parametrize(("compared", "largest", "equal"), [
-    (5, 0.0, True), (5, 0.9 * AGREEMENT, True), (5, 1.1 * AGREEMENT, False), (0, math.nan, False), (5, math.nan, False),
+    (5, 0.0, True), (5, 0.9e-9, True), (5, 1.1e-9, False), (0, math.nan, False), (5, math.nan, False),
 ])  # fmt: skip
 def test_nothing_compared_is_not_equal(compared, largest, equal):
     assert Comparison("compensator", compared, 0, largest, 0.0).equal is equal

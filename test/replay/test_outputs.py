@@ -1,14 +1,19 @@
 """Replayed outputs as one table, and a replay in a few numbers."""
 
 import math
+from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
+from winch_friction.compensation.feedforward import Feedforward
 from winch_friction.estimation import ParameterEstimate
 from winch_friction.physics.signals import Run
 from winch_friction.records.model_file import load_model
-from winch_friction.replay.outputs import _in_order, _learned, _said, output_table
+from winch_friction.records.topics import stamp_time
+from winch_friction.replay.compensator import FeedforwardRecord
+from winch_friction.replay.outputs import _in_order, _learned, _said, _write_topics, output_table
 from winch_friction.replay.recording import Replayed
 from winch_friction.replay.summary import summary
 
@@ -47,6 +52,26 @@ def test_rows_before_the_estimators_first_answer_have_that_one():
     assert table["estimator.friction_torque"].tolist() == [5.0, 5.0, 5.0]
     assert list(table.aside["state"]) == ["waiting", "active", "stale"]
     assert list(table.aside["estimator.state"]) == ["stick"] * 3
+
+
+def test_a_pressure_is_written_under_the_stamp_and_mark_of_its_torque():
+    compensator, estimator = (output([10.5, 11.0], [3.0, 4.0], ["active"] * 2) for _ in range(2))
+    columns = compensator.columns | {"pressure": np.array([2e5, np.nan])}
+    aside = compensator.aside | {"number": np.array([41, 42]), "valid": np.array([True, False])}
+    written, model = [], load_model("a6vm215_crane2")
+    writer = SimpleNamespace(write=lambda *row: written.append(row))
+    _write_topics(writer, replace(compensator, columns=columns, aside=aside), estimator, model, None)
+    told = [(topic, stamp_time(m), m.header.frame_id) for topic, m, _ in written if topic.startswith("/compensator")]
+    torque, pressure = "/compensator/friction_torque", "/compensator/pressure_feedforward"
+    assert told == [(torque, 10.5, "valid 41"), (pressure, 10.5, "valid 41"), (torque, 11.0, "invalid 42")]
+
+
+def test_a_record_keeps_the_number_of_each_feedforward():
+    """A table's numbers are those that were published: what the watchdog said in between is counted."""
+    record = FeedforwardRecord()
+    for number in (1, 2, 7):
+        record.take(Feedforward(number, 5.0, 0.0, 50.0, "active", 0.0, 1.0, True, number))
+    assert record.run("r").aside["number"].tolist() == [1, 2, 7]
 
 
 def test_a_parameter_of_a_summary_has_its_seed_what_was_learned_and_how_surely():

@@ -15,7 +15,7 @@ from winch_friction.simulation.assembly import (
     prescribed_motion,
     schedule,
 )
-from winch_friction.simulation.hidden.catalogue import MONTH, apply_effects
+from winch_friction.simulation.hidden.catalogue import apply_effects
 from winch_friction.simulation.hidden.torque import fixed_torque, group_loss, shaft_loss
 from winch_friction.simulation.motion.sea import jonswap_sea, jonswap_spectrum
 from winch_friction.simulation.plant import equations, loop
@@ -401,7 +401,7 @@ def test_what_a_shaft_loses_is_of_the_size_that_is_said(name, size, torque, cran
     """One motor at 229 rpm, 1000 N m of the wire's tension at the shaft, three months after the wear began."""
     _, fields, _ = hidden(crane, name, size)
     w = 24.0
-    found = plain(shaft_loss)(fields, 1.0, w, LOAD_TORQUE, 250.0, 1000.0, fields.wear_epoch + 3.0 * MONTH)
+    found = plain(shaft_loss)(fields, 1.0, w, LOAD_TORQUE, 250.0, 1000.0, fields.wear_epoch + 3.0 * 2_592_000.0)
     assert found == pytest.approx(torque, rel=5e-3 if name == "stribeck" else 1e-6)
     assert plain(shaft_loss)(SimpleNamespace(**{**vars(fields), "brake": 0.0}), 1.0, 1e6, 0.0, 250.0, 0.0, 0.0) == 0.0
 

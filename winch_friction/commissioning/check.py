@@ -248,7 +248,7 @@ def diagnosed(
     fit = fit_of(views, model)
     diagnosis = None
     if ranked or fit.doubted:
-        diagnosis = diagnose(fit, views, crane, model, {n: each for n, each in others().items() if each != crane})
+        diagnosis = diagnose(fit, views, crane, model, others())
     told = [{each.channel: each.ratio for each in agreements(view)} for view in views]
     slow = [w for run, rates in zip(usable, told, strict=True) for w in told_slow_clock(run, rates | ways(run, crane))]
     readings = [*reading_findings(runs, crane)]

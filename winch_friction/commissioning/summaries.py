@@ -74,12 +74,12 @@ def channel_findings(run: Run) -> Iterator[Finding]:
 def _span_findings(run: Run, each: ChannelSummary, kind: str) -> Iterator[Finding]:
     values = run[each.channel]
     span = each.largest - each.smallest
-    if span <= 0.0 and kind not in MAY_STAND:
+    if kind in MAY_STAND:
+        return
+    if span <= 0.0:
         at = read_as(each.channel, each.smallest)
         said = f"{run.name}: {each.channel} never changes ({at}): is the sensor connected?"
         yield Finding("warning", "stuck", said, each.channel, (run.name,))
-        return
-    if kind in MAY_STAND or span <= 0.0:
         return
     if each.longest_still > STUCK and _changes_always(values) and not _rests(run, each):
         said = f"{run.name}: {each.channel} stands still for {each.longest_still:.2g} s: stuck?"

@@ -282,7 +282,7 @@ def _within_limits(log: Log, name: str, channel: str, column: LogColumn, values:
 
 def _without_footer(columns: Mapping[str, FloatArray], log: Log, said: list[str]) -> dict[str, FloatArray]:
     """Rows at the end without a time and with hardly a value are no samples: a footer, a summary."""
-    known = np.sum([np.isfinite(values) for name, values in columns.items() if name != "time"], axis=0)
+    known = np.sum([np.isfinite(values) for values in columns.values()], axis=0)
     empty = ~np.isfinite(columns["time"]) & (known <= max(0.25 * (len(columns) - 1), 0.0))
     count = len(empty) - (np.flatnonzero(~empty)[-1] + 1) if (~empty).any() else 0
     if not count:

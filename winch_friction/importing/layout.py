@@ -3,6 +3,7 @@
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import dropwhile
 from typing import Any
 
 from winch_friction.importing.cells import is_missing, is_number, is_time
@@ -70,7 +71,7 @@ def find_layout(rows: Sequence[Row], decimal: str, thousands: str = "") -> Layou
     if first is None:
         return None
     marks = decimal, thousands
-    while first + run < len(seen) and _labels_values(seen[first], seen[first + 1 : first + 1 + run], *marks):
+    while first + run < len(seen) and _labels_values(seen[first], seen[first + 1 : first + _ABOVE + run], *marks):
         first += 1
     top = first
     while first + 1 < len(seen) and _is_property(seen[first], seen[-1]):
@@ -90,12 +91,12 @@ def find_layout(rows: Sequence[Row], decimal: str, thousands: str = "") -> Layou
 
 def _labels_values(row: Row, below: Sequence[Row], decimal: str, thousands: str) -> bool:
     """Whether a row of numbers is one of a program's head, each behind its label (`Port; 851; Port; 851`): words stand
-    where all rows below it have values."""
+    where the rows below it, but for further ones with words in the same places, have values."""
     is_value = lambda cell: is_number(cell, decimal, thousands) or is_time(cell)
-    words = [
-        k for k, cell in enumerate(row)
-        if not is_missing(cell) and not is_value(cell) and all(k < len(b) and is_value(b[k]) for b in below)
-    ]  # fmt: skip
+    is_word = lambda cell: not is_missing(cell) and not is_value(cell)
+    labels = [k for k, cell in enumerate(row) if is_word(cell)]
+    values = list(dropwhile(lambda b: all(k < len(b) and is_word(b[k]) for k in labels), below))[:_RUN]
+    words = [k for k in labels if all(k < len(b) and is_value(b[k]) for b in values)] if values else []
     return len(words) > 1 and len(words) >= _LABELS * len(row)
 
 

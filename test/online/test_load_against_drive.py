@@ -8,7 +8,7 @@ from sea import CRANE, SEED, TOPICS
 
 from winch_friction.online.agreement import Agreement
 from winch_friction.online.compensator import CompensatorService
-from winch_friction.online.doubt import COMPARED, LEAST_KNOWN, LoadAgainstDrive
+from winch_friction.online.doubt import COMPARED, LEAST_KNOWN, PUSH_SAID, LoadAgainstDrive
 from winch_friction.physics.channels import GRAVITY
 from winch_friction.physics.signals import GroupSample, Sample
 from winch_friction.physics.winch.crane import Drive
@@ -284,3 +284,16 @@ def test_a_doubt_stands_while_friction_may_explain_what_it_was_raised_for():
     for k in range(round(20.0 / PERIOD)):
         found.append(bool(agreement.contradictions(exchanged(at_work(k * PERIOD, 55e3, 300.0, 8.0)), k * PERIOD)))
     assert all(found[found.index(True) :])
+
+
+@pytest.mark.parametrize("wave", [4.0, 10.0, 20.0])
+def test_a_speed_of_the_wrong_sign_makes_friction_push_and_is_doubted_without_a_wire_counter(wave):
+    """Command and speed of one program: 530 N m pushed with full force against each motion, for good."""
+
+    def turned(sample: Sample) -> Sample:
+        return replace(sample, motor_speed=-sample.motor_speed, speed_reference=-sample.speed_reference)
+
+    agreement, found = Agreement(CRANE, ChannelRanges(CRANE, TOPICS.groups)), []
+    for k in range(round(max(25.0, 2.0 * wave) / PERIOD)):
+        found.append(agreement.contradictions(turned(at_work(k * PERIOD, 55e3, 300.0, wave)), k * PERIOD))
+    assert found[-1] == (PUSH_SAID,)

@@ -23,6 +23,7 @@ from winch_friction.online.doubt import (
     LEAST_KNOWN,
     LONGEST_SPAN,
     MEMORY,
+    PUSH_SAID,
     Doubt,
     LoadAgainstDrive,
     StandingReadings,
@@ -289,6 +290,23 @@ def test_the_middle_of_both_ways_may_be_off_by_two_fifths_and_by_a_tenth_of_the_
     said = compared(shown, held, -1.0, 2.2, own, metres)  # of a memory of 20 s, 5 are known after 5.8
     assert said == (AT_ONCE + IN_THE_MIDDLE if doubted else "")
     assert own.pending is doubted
+
+
+@pytest.mark.parametrize(
+    ("hoisted", "lowered", "said"),
+    [
+        ((50, 46.5), (50, 53.5), ""), ((50, 46), (50, 54), PUSH_SAID), ((50, 54), (50, 46), ""),
+        ((2, 0), (2, 5), ""), ((2, -1), (2, 7), PUSH_SAID),  # an empty hook
+        ((50, 36), (10, 19), ""), ((50, 34), (10, 19), PUSH_SAID),  # of 40 t a cell may be off by 16
+        ((10, 0), (50, 55), ""), ((10, -1), (50, 65), PUSH_SAID),
+    ],
+)  # fmt: skip
+def test_friction_opposes_both_ways_or_the_speed_turns_the_wrong_way(hoisted, lowered, said):
+    own = LoadAgainstDrive(CRANE, RANGES)
+    assert compared(*hoisted, 1.0, 8.0, own) == ""
+    assert compared(*lowered, -1.0, LEAST_KNOWN, own) == ""
+    assert compared(*lowered, -1.0, 2.2, own) == said
+    assert own.pending is bool(said)
 
 
 @pytest.mark.parametrize(

@@ -148,9 +148,7 @@ def _covariance(top: Section, entries: list[_Entry]) -> np.ndarray | None:
     stds = np.array([np.nan if entry.std is None else entry.std for entry in entries])
     if np.isnan(stds).all():
         if "correlation" in top:
-            raise InputError(
-                f"{top.where}: correlation without deviations: give every parameter a std, or drop it"
-            )
+            raise InputError(f"{top.where}: correlation without deviations: give every parameter a std, or drop it")
         return None
     if np.isnan(stds).any():
         raise InputError(

@@ -55,6 +55,22 @@ def heard() -> Heard:
     return Heard()
 
 
+def test_a_part_of_a_message_that_stays_away_is_named_and_not_its_stamps(heard: Heard) -> None:
+    """Read was: winch/joint_states: its stamps are 3.3 s behind the speed's. They were the speed's."""
+    speed = TOPICS.inputs[SPEED]
+    for k in range(200):
+        heard.now += 0.02
+        sample = Sample(heard.now, motor_speed=50.0, shaft_angle=1.0 * k, groups={})
+        message = dict(TOPICS.encode(sample, MESSAGES))[SPEED]
+        if k > 100:
+            message.position = []
+        heard.gate.take(speed, message, heard.now, heard.now)
+        if k in (100, 150, 199):
+            summary = heard.health.report().summary
+            assert (f"{SPEED}: comes without shaft_angle now" in summary) is (k > 100)
+            assert "behind" not in summary
+
+
 def test_a_rate_is_that_since_the_last_report(heard: Heard) -> None:
     for period, rate in ((0.02, 50.0), (0.05, 20.0), (0.02, 50.0)):
         heard.hear(1.0, period)

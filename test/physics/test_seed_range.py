@@ -68,3 +68,10 @@ def test_a_value_at_the_edge_is_not_refused_for_the_rounding_of_its_file(crane2_
             refuse_outside_seed(edge, crane2_model, 0.5)
     else:
         refuse_outside_seed(edge, crane2_model, 0.5)
+
+
+def test_what_lies_just_outside_is_told_apart_from_the_edge(crane2_model: FrictionModel) -> None:
+    """It read 'K1 = 0.006075 is outside 0.002025 ... 0.006075'."""
+    beside = crane2_model.with_values({"K1": 1.5000001 * crane2_model.value("K1")})
+    with pytest.raises(InputError, match=r"K1 = 0\.0060750004\d* is outside .* 0\.006075, "):
+        refuse_outside_seed(beside, crane2_model, 0.5)

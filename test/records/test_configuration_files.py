@@ -50,6 +50,13 @@ def correlated(entries, size=10):
     return [[entries.get((i, k), float(i == k)) for k in range(size)] for i in range(size)]
 
 
+def without_deviations(data):
+    """Said was: unknown key 'correlation'; did you mean corrections?"""
+    for each in data["parameters"].values():
+        each.pop("std", None)
+    data["correlation"] = correlated({})
+
+
 def edited(change):
     data = content()
     change(data)
@@ -99,6 +106,12 @@ def edited(change):
         ),
         (lambda d: d["constants"].update(density=0, viscosity=0), r"density is 0 .* \| .* viscosity is 0 "),
         (lambda d: d.update(correlation=[[1.0]]), "correlation must be 10 x 10"),
+        (without_deviations, "model.yaml: correlation without deviations: give every parameter a std"),
+        (lambda d: d.update(terms=[]), "model.yaml: parameters: unknown key 'C1'; none may stand here"),
+        (
+            lambda d: d["parameters"]["K4"].update(lower=50, upper=10),
+            r"model.yaml: parameters: K4: lower 50 N\*m is above upper 10",
+        ),
         (lambda d: d.update(correlation=[["a"]]), "correlation must be 10 x 10"),
         (lambda d: d.update(correlation=[[1.0, 2.0], [3.0]]), "correlation must be 10 x 10"),
         (lambda d: d.update(correlation={"K1": {"K2": 0.3}}), "correlation must be 10 x 10"),

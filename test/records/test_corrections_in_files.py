@@ -82,7 +82,11 @@ def test_std_and_bounds_have_the_unit_of_the_value():
         ({"tare_load": {"value": 3, "unit": "bar"}}, "tare_load: unit 'bar'"),
         ({"tare_load": {"value": 3, "unit": "t", "sigma": 1}}, "unknown key 'sigma'"),
         ({"wire_weight": {"value": -18.9, "unit": "kg/m"}}, "wire_weight: .*outside 0"),
-        ({"tare_load": [{"value": 3, "unit": "t"}, {"value": 4, "unit": "t"}]}, "stands twice"),
+        (
+            {"tare_load": [{"value": 3, "unit": "t"}, {"value": 4, "unit": "t"}]},
+            "^model.yaml: .*stands twice",
+        ),
+        ({"pressure_scale": {"value": -1, "unit": "1"}}, "pressure_scale': -1 is outside -0.2 ... 0.2$"),
         ({"pressure_offset": {"value": 3, "unit": "bar", "groups": "active"}}, "groups must be a list"),
         ({"pressure_offset": [{"value": 3, "unit": "bar", "groups": []}]}, r"pressure_offset\[1\]: groups must be"),
         ({"layer_radius": {"value": 3, "unit": "mm", "layers": ["6"]}}, "layers must be a list"),

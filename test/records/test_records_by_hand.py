@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from scipy.io import savemat
 
+from winch_friction.importing.cells import as_column
 from winch_friction.physics.channels import GRAVITY
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.friction import registered_terms
@@ -18,7 +19,7 @@ from winch_friction.records.emps import FORCE_GAIN, read_emps
 from winch_friction.records.input_mapping import InputMapping, bag_options_of
 from winch_friction.records.model_file import model_from_content, model_to_text
 from winch_friction.records.plain import finite
-from winch_friction.records.runs import _jumping
+from winch_friction.records.runs import _jumping, read_run
 from winch_friction.records.sample_stream import SIMULTANEOUS, InputHold, SampleStream
 from winch_friction.records.strict_yaml import Section, parse_yaml
 from winch_friction.records.telemetry import Telemetry, estimates, faults, inputs, state
@@ -391,3 +392,25 @@ def test_numbers_of_numpy_are_written_as_plain_ones_and_what_is_no_number_as_nul
     found = finite(given)
     assert found == {"1": None, "b": [3, True], "c": None, "d": [1.0, None]}
     assert [type(each) for each in found["b"]] == [int, bool]
+
+
+@pytest.mark.filterwarnings("error")
+def test_a_number_that_no_sensor_says_is_none(tmp_path):
+    """1e300 rad/s overflowed in every square: numpy's warnings stood among the lines of `check`."""
+    path = tmp_path / "run.csv"
+    rows = [f"{0.02 * k:g},{speed},{'1e300' if k == 5 else '1e5'}" for k, speed in enumerate(["1.0"] * 60)]
+    path.write_text("\n".join(["time,motor_speed [rad/s],main.pressure_a [Pa]", *rows]))
+    run = read_run(path, complete=False)
+    assert np.flatnonzero(np.isnan(run["main.pressure_a"])).tolist() == [5]
+    assert any("1 of 60 values is not a number, line 7" in each for each in run.warnings)
+    path.write_text(path.read_text().replace(",1.0,", ",1e300,"))
+    with pytest.raises(InputError, match=r"'motor_speed' is there but holds no number"):
+        read_run(path)
+
+
+@pytest.mark.parametrize("beyond", ["1e300", "-1e101"])
+def test_a_cell_that_no_sensor_says_is_named_and_not_taken(beyond):
+    for cells in (["1.5"] * 9 + [beyond], [1.5] * 9 + [float(beyond)], ["1.5"] * 8 + ["x", beyond]):
+        column = as_column("p", cells, ".", "")
+        assert np.isnan(column.values[9])
+        assert column.bad[-1][0] == 9

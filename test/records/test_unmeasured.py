@@ -188,3 +188,13 @@ def test_a_plateau_is_no_end_of_a_range():
     held = swell(45.0)
     held.columns["motor_speed"] = np.repeat(held["motor_speed"][::5], 5)
     assert mended(held) == ({}, [])
+
+
+@pytest.mark.parametrize("rows", [2, 3, 4])
+def test_a_run_of_two_rows_is_looked_at_as_any_other(rows):
+    """The look for reversals made three of two rows, and `check` and `gap` ended with a traceback."""
+    speed = np.array([5.0, -5.0, 5.0, -5.0])[:rows]
+    run = Run("short", {"time": 0.1 * np.arange(rows), "motor_speed": speed, "main.pressure_a": 1e5 * speed})
+    [found], told = without_broken([run])
+    assert not told
+    assert np.array_equal(found["motor_speed"], speed)

@@ -267,7 +267,7 @@ def practice(
     refuse_unwritable(out / "report.html")
     refuse_foreign(out, ("report.html", "motor.yaml", "seed.yaml"), "report.html", PRACTICE, overwrite)
     folder = read_practice(_example(example))
-    refuse_copies([*folder.tests, *folder.held_out])
+    refuse_copies([*folder.tests, *folder.held_out, *folder.ahc])
     forced = refuse_implausible([*folder.tests, *folder.held_out, *folder.ahc], folder.crane, force=force)
     done = run_practice(
         folder,

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from winch_friction.importing.log import LogColumn
-from winch_friction.physics.signals import FloatArray
+from winch_friction.physics.signals import LARGEST, FloatArray
 
 MISSING = (
     "",
@@ -124,12 +124,16 @@ def as_column(
     for row, cell in enumerate(cells):
         if isinstance(cell, (int, float, Decimal)) and not isinstance(cell, bool):
             values[row] = float(cell)
-            continue
+            if not abs(values[row]) >= LARGEST:  # NaN is none either
+                continue
+            values[row], cell = np.nan, str(cell)
         if is_missing(cell) or (isinstance(cell, str) and cell.strip().lower() in NO_VALUE):
             continue
         if isinstance(cell, str) and is_number(cell, decimal, thousands):
-            values[row] = _number(cell, decimal, thousands)
-            continue
+            number = _number(cell, decimal, thousands)
+            if abs(number) < LARGEST:
+                values[row] = number
+                continue
         kept += 1
         if kept <= _MARKS_KEPT:
             bad.append((row, str(cell).strip()[:60]))
@@ -181,7 +185,7 @@ def plain_numbers(cells: Sequence[str], decimal: str, thousands: str) -> FloatAr
         values = np.array([cell.replace(decimal, ".") or "nan" for cell in cells], dtype=float)
     except ValueError:
         return None
-    return None if np.isinf(values).any() else values
+    return None if (np.abs(values) >= LARGEST).any() else values
 
 
 def _number(cell: str, decimal: str, thousands: str) -> float:

@@ -81,6 +81,8 @@ class InputHealth:
             problems.append((ERROR if needed else WARN, f"{topic}: silent for more than {limit:g} s{still}"))
         elif refused:
             problems.append((ERROR if needed else WARN, f"{topic}: {refused} refused, {arrivals.reason}"))
+        elif gone := self._without(topic):
+            problems.append((WARN, f"{topic}: comes without {gone} now"))
         elif lag := self._lag(topic):
             problems.append((ERROR if needed else WARN, f"{topic}: its stamps are {lag:.1f} s behind the speed's"))
         elif ahead := self._ahead(topic, arrivals.arrived):
@@ -98,6 +100,13 @@ class InputHealth:
             return f"{topic}: {unlike} of {publishers} {MISMATCH}"
         hint = f"; or name '{source.channels[0]}' in float64_inputs" if FLOAT64 in others and source.stamped else ""
         return f"{topic}: {unlike} of {publishers} publishers send {', '.join(others)}, not {source.type_name}{hint}"
+
+    def _without(self, topic: str) -> str:
+        """The columns that a topic's messages brought and do not any more, while another of theirs is young."""
+        hold, ages = self._gate.hold, self._gate.ages()
+        held = [each for each in self._gate.topics.inputs[topic].channels if each in ages]
+        old = [each for each in held if ages[each] > hold.limit(each)]
+        return ", ".join(old) if len(old) < len(held) else ""
 
     def _lag(self, topic: str) -> float:
         """s by which what a topic says is too old by its stamps, although it comes; 0 when it is young enough."""

@@ -1,9 +1,8 @@
 """How long a contradiction must last before it counts, and how long an agreement before it is over; whether readings
 live; and whether speed and wire, load and drive torque can be of one machine.
 
-A controller that hangs may go on sending what it read last, with new stamps, for ever. One sensor that stands still may
-have nothing to say; all that tell of the drive together, to the last digit, cannot while the winch turns: pumps
-pulsate, pistons pass, transducers and encoders have noise and steps.
+A controller that hangs may send what it read last, with new stamps, for ever. One sensor may stand still; all that tell
+of the drive cannot, to the last digit, while the winch turns: pumps pulsate, transducers and encoders have noise.
 """
 
 import math
@@ -170,17 +169,20 @@ class WireAgainstSpeed:
 # -- the load that is shown and the drive's torque
 # the load and the drive: inertia, friction and waves are a third of it at most
 TORQUE_SHARE, TORQUE_TIME = 0.8, 1.0  # of the larger one, s
+MOST_MOTION = 1.0 / 3.0  # of the larger one, where friction would have to push
 SMALLEST_TORQUE = 0.1  # of what the rated load asks for; below it nothing is compared
-# the same of what friction may add hoisting, and take lowering: an empty hook is moved by friction alone (30 % of the
-# nominal torque of hydraulic manipulators, Lischinsky et al. 1999)
-MOST_FRICTION = 0.3
+# the same of what friction may add hoisting, and take lowering: an empty hook is moved by friction alone
+MOST_FRICTION = 0.3  # of the nominal torque of hydraulic manipulators, Lischinsky et al. 1999
 # the same in the middle between hoisting and lowering: a cell and a feedback of some per cent each, a tare and wire
 # that are not weighed, of up to a tenth of the rated load. A load that is taken for 1.4 times what it is makes the
 # compensated share, 0.9, one of 1.26: from 1.3 on a winch may cycle
-MIDDLE_SHARE = 0.4  # of the larger one
+MIDDLE_SHARE = 0.4  # of the smaller one; of the larger one where an unsaid layer may be why
 MEMORY, LEAST_KNOWN = 20.0, 5.0  # s of motion each way: some waves, and half of one of 10 s
-# s from one moving sample to the next, a reversal between them; of motion each way before a jump begins the means anew
-AT_ONCE, COMPARED = 1.0, 2.0 * LEAST_KNOWN
+COMPARED = 2.0 * LEAST_KNOWN  # s of motion each way before a jump begins the means anew
+# of what the rated load asks for: less hoisting than lowering is no friction. Pressures 0.1 s late in a wave of 4 s
+# leave nine tenths of it, a wave cut off adds 40 N m; two fifths of a load's change may be the cell's, and a layer's
+LEAST_PUSH = 0.05
+PUSH_SAID = "the drive torque pushes with the motion, hoisting and lowering: has motor_speed the wrong sign?"
 
 
 @dataclass
@@ -202,77 +204,69 @@ class Way:
 class LoadAgainstDrive:
     """Whether the load that is shown and the drive's torque can be of one machine; it needs no model.
 
-    A load cell that is dead, or stands still while another load hangs there. The load is the hook load, else that of
-    the rope's force, else `assumed` kg, which somebody has set. A winch that stands still shows nothing: its brake may
-    carry the load.
-
-    A cell that is off by less than a dead one is seen in the middle between hoisting and lowering: there friction,
-    which opposes both, cancels, and so does what accelerates the shaft from one reversal to the next. A jump of one
-    that the other does not follow begins the means anew; a load that is picked up moves both.
+    The load is the hook load, else that of the rope's force, else `assumed` kg, which somebody has set. At rest nothing
+    shows: the brake may carry the load. A cell that is off by less than a dead one is seen in the middle between
+    hoisting and lowering: there friction cancels, and what accelerates the shaft from one reversal to the next. From
+    one way to the other friction takes sides: a speed that turns the wrong way makes it push. A jump of one that the
+    other does not follow, at rest too, begins the means anew; a load that is picked up moves both.
     """
 
     def __init__(self, crane: Crane, ranges: ChannelRanges, assumed: float = math.nan) -> None:
         self._crane, self.assumed = crane, assumed
         self._rated, self._moving = 0.5 * ranges.load, AGAINST_SPEED * crane.speed_scale  # kg, rad/s
         self._largest = ranges.load + MOST_FRICTION * self._rated  # kg
-        self._at_once, self._both_ways = Doubt(TORQUE_TIME), Doubt(TORQUE_TIME)
+        self._at_once, self._both_ways, self._pushes = (Doubt(TORQUE_TIME) for _ in range(3))
         self._hoisting, self._lowering = Way(), Way()
-        self._last = (math.nan, math.nan, False)  # s; what the drive's torque was beyond the load's, N m; hoisting?
         self._by = ""  # what showed the load last
 
     def contradiction(self, sample: Sample, dt: float) -> str:
         """What does not fit after `dt` s more, in words, '' for nothing."""
-        at_once = both_ways = None
+        at_once = both_ways = pushes = None
         if math.isnan(self._load(sample)):  # nothing is shown that could be wrong, whatever was before
-            at_once = both_ways = False
+            at_once = both_ways = pushes = False
             self._hoisting, self._lowering = Way(), Way()
         else:
             self._by = shown_by(sample)
             if self._tells(sample):
-                at_once, both_ways = self._compared(sample, dt)
-        # both look at every sample
-        stand = self._at_once.step(at_once, dt), self._both_ways.step(both_ways, dt)
-        if not any(stand):
-            return ""
-        how = "" if stand[0] else ", hoisting and lowering"
-        return f"{self._by} contradicts the drive torque{how}"
+                at_once, both_ways, pushes = self._compared(sample, dt)
+        stand = self._at_once.step(at_once, dt), self._both_ways.step(both_ways, dt), self._pushes.step(pushes, dt)
+        if not any(stand[:2]):
+            return PUSH_SAID if stand[2] else ""
+        return f"{self._by} contradicts the drive torque" + (", hoisting and lowering" if stand[1] else "")
 
     @property
     def pending(self) -> bool:
         """Whether they differ, though it may not be said yet."""
-        return self._at_once.pending or self._both_ways.pending
+        return self._at_once.pending or self._both_ways.pending or self._pushes.pending
 
-    def _compared(self, sample: Sample, dt: float) -> tuple[bool | None, bool | None]:
-        """Whether load and drive differ in this sample, and in the middle between both ways."""
+    def _compared(self, sample: Sample, dt: float) -> tuple[bool | None, ...]:
+        """Whether load and drive differ in this sample, in the middle of both ways, and whether friction pushes."""
         lever = self._crane.drum_torque(1.0, sample.wire_layer) / self._crane.gear_ratio  # N m per kg
         load, drive = lever * self._load(sample), sample_drive_torque(sample, self._crane)
         if not math.isfinite(drive - load):
-            return None, None
-        by_friction = (drive - load) * sample.motor_speed > 0.0
+            return None, None, None
         # a worm that holds its load by itself leaves an electric motor nothing of it lowering; its middle is the load
-        at_once = self._differ(load, drive, lever, by_friction) if self._crane.drive.hydraulic else None
+        at_once = self._differ(load, drive, lever, sample) if self._crane.drive.hydraulic else None
         if abs(drive) > lever * self._largest:  # no load asks for it: a wrong unit, which a mean keeps for minutes
-            return at_once, True
-        if self._jump(sample, load, drive, lever):
+            return at_once, True, None
+        if self._jump(load, drive, lever, sample):
             self._hoisting, self._lowering = Way(), Way()
         (self._hoisting if sample.motor_speed > 0.0 else self._lowering).step(load, drive, dt)
-        return at_once, self._middles_differ(sample, lever)
+        return at_once, *self._both(sample, lever)
 
-    def _jump(self, sample: Sample, load: float, drive: float, lever: float) -> bool:
-        """Whether the two went apart, or together, at once; at a reversal by more than friction turns by.
+    def _jump(self, load: float, drive: float, lever: float, sample: Sample) -> bool:
+        """Whether one went from the other, or to it, beside their means of this way. Only after they were compared for
+        a while: spikes that follow each other must not keep them from that."""
+        way = self._hoisting if sample.motor_speed > 0.0 else self._lowering
+        apart = abs(drive - load - (way.drive - way.load))
+        known = min(self._hoisting.known, self._lowering.known) >= COMPARED
+        return known and apart > self._most(load, drive, lever, sample)
 
-        Only after they were compared for a while: spikes that follow each other must not keep them from that.
-        """
-        (time, beyond, hoisted), hoists = self._last, sample.motor_speed > 0.0
-        self._last = (sample.time, drive - load, hoists)
-        if not 0.0 < sample.time - time < AT_ONCE or min(self._hoisting.known, self._lowering.known) < COMPARED:
-            return False
-        friction = 0.0 if hoists is hoisted else MOST_FRICTION * lever * self._rated
-        return abs(drive - load - beyond) > max(self._most(max(abs(load), abs(drive)), lever), friction)
-
-    def _most(self, larger: float, lever: float) -> float:
-        """How far the means may be apart, N m."""
-        return max(MIDDLE_SHARE * larger, SMALLEST_TORQUE * lever * self._rated)
+    def _most(self, load: float, drive: float, lever: float, sample: Sample) -> float:
+        """How far the means may be apart, N m; a layer that nobody says may be an inner one, of 0.7 of the load."""
+        inner = load > drive and sample.wire_layer != sample.wire_layer
+        share = MIDDLE_SHARE * (max if inner else min)(load, drive)
+        return max(share, SMALLEST_TORQUE * lever * self._rated)
 
     def _tells(self, sample: Sample) -> bool:
         moves = abs(sample.motor_speed) > self._moving
@@ -282,19 +276,25 @@ class LoadAgainstDrive:
         shown = sample_load(sample)
         return shown if shown == shown else self.assumed
 
-    def _differ(self, load: float, drive: float, lever: float, by_friction: bool) -> bool | None:
+    def _differ(self, load: float, drive: float, lever: float, sample: Sample) -> bool | None:
         large, apart = max(abs(load), abs(drive)), abs(drive - load)
         if not large > SMALLEST_TORQUE * lever * self._rated:
             return None
-        if by_friction and TORQUE_SHARE * large < apart < MOST_FRICTION * lever * self._rated:
-            return None
-        return apart > TORQUE_SHARE * large
+        by_friction = (drive - load) * sample.motor_speed > 0.0
+        if apart > TORQUE_SHARE * large:
+            return None if by_friction and apart < MOST_FRICTION * lever * self._rated else True
+        apart, most = self._beyond(load, drive, lever, sample), self._most(load, drive, lever, sample)
+        return apart > most + MOST_MOTION * large if not by_friction else None if apart > most else False
 
-    def _middles_differ(self, sample: Sample, lever: float) -> bool | None:
+    def _beyond(self, load: float, drive: float, lever: float, sample: Sample) -> float:
+        """By how much more they are apart, N m, than wire makes that a cell at the hook does not weigh."""
+        wire = self._crane.wire_mass * sample.wire_out if math.isfinite(sample.wire_out) else 0.0  # kg
+        return max(drive - load - lever * max(wire, 0.0), load - drive)
+
+    def _both(self, sample: Sample, lever: float) -> tuple[bool | None, bool | None]:
         one, other = self._hoisting, self._lowering
         if min(one.known, other.known) < LEAST_KNOWN:
-            return None
-        load, drive = 0.5 * (one.load + other.load), 0.5 * (one.drive + other.drive)
-        wire = self._crane.wire_mass * sample.wire_out if math.isfinite(sample.wire_out) else 0.0  # kg
-        apart = max(drive - load - lever * max(wire, 0.0), load - drive)  # a cell at the hook does not weigh the wire
-        return apart > self._most(max(load, drive), lever)
+            return None, None
+        load, drive, changed = 0.5 * (one.load + other.load), 0.5 * (one.drive + other.drive), one.load - other.load
+        push = other.drive - one.drive + changed - MIDDLE_SHARE * abs(changed) > LEAST_PUSH * lever * self._rated
+        return self._beyond(load, drive, lever, sample) > self._most(load, drive, lever, sample), push

@@ -75,7 +75,9 @@ def counted(count: int, one: str, more: str) -> str:
 def unknown_key(key: str, known: Iterable[str]) -> str:
     """What is said of a key that a file cannot have: what may be meant, or else which keys there are."""
     known = list(known)
-    return f"unknown key '{key}';" + (meant(key, known) or f" known keys are {', '.join(known)}")
+    return f"unknown key '{key}';" + (
+        meant(key, known) or (f" known keys are {', '.join(known)}" if known else " none may stand here")
+    )
 
 
 # -- settings with limits

@@ -16,7 +16,7 @@ from winch_friction.physics.errors import InputError, counted
 
 __all__ = [
     "ASSUMED", "GROUP_CHANNELS", "LOST", "NAN", "SAMPLE_SCALARS", "FloatArray", "GroupSample", "Run", "Sample",
-    "column_unit",
+    "LARGEST", "column_unit", "readable",
 ]  # fmt: skip
 
 FloatArray = NDArray[np.float64]
@@ -24,6 +24,13 @@ NAN = float("nan")
 # where these are absent something is assumed: a crane that stands still, the outer layer, a usual length of wire.
 # What was there and is not any more is LOST, which no sensor shows: nothing is known then
 ASSUMED, LOST = ("heave_velocity", "wire_layer", "wire_out"), float("inf")
+LARGEST = 1e100  # SI; no sensor says it in any unit, and squares and sums of what is less are numbers
+
+
+def readable(values: FloatArray) -> FloatArray:
+    """A column, (samples,), without what is infinite or beyond `LARGEST` (NaN); itself where there is none."""
+    beyond = np.abs(values) >= LARGEST
+    return np.where(beyond, NAN, values) if beyond.any() else values
 
 
 @dataclass(slots=True)

@@ -12,7 +12,7 @@ from typing import Any
 from winch_friction.physics.channels import dimension_of, factor_to_si, product
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.friction import registered_terms
-from winch_friction.physics.friction.correction import Correction
+from winch_friction.physics.friction.correction import Correction, check_corrections
 from winch_friction.physics.friction.declared_correction import declared_correction
 from winch_friction.physics.friction.table import FACTORS, Table, tabulated
 from winch_friction.physics.friction.term import Scope, Term
@@ -31,6 +31,10 @@ def read_corrections(top: Section) -> tuple[Correction, ...]:
         for k, each in enumerate(entries):
             where = f"{section.where}: {name}" + (f"[{k + 1}]" if many else "")
             found.append(_correction(str(name), Section(each, where)))
+    try:
+        check_corrections(tuple(found))
+    except InputError as error:
+        raise InputError(f"{top.where}: {error}") from None
     return tuple(found)
 
 

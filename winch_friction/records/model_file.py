@@ -126,6 +126,8 @@ class _Entry:
             return None
         low = parameter.lower if lower is None else finite(lower, f"{where}: lower") * self.factor
         high = parameter.upper if upper is None else finite(upper, f"{where}: upper") * self.factor
+        if low > high:
+            raise InputError(f"{where}: lower {low:g} {parameter.unit} is above upper {high:g} {parameter.unit}")
         return low, high
 
 
@@ -145,6 +147,8 @@ def _term_names(top: Section) -> list[str]:
 def _covariance(top: Section, entries: list[_Entry]) -> np.ndarray | None:
     stds = np.array([np.nan if entry.std is None else entry.std for entry in entries])
     if np.isnan(stds).all():
+        if "correlation" in top:
+            raise InputError(f"{top.where}: correlation without deviations: give every parameter a std, or drop it")
         return None
     if np.isnan(stds).any():
         raise InputError(

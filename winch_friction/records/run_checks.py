@@ -1,8 +1,8 @@
 """What is checked of every run that is read, and said by row and column.
 
 Refused with an `InputError`: a required column missing, a row without time, time that goes back, fewer than two rows,
-a required column without any value. Said as a warning of the run: values that are NaN or infinite (kept as
-NaN), an optional column without any value (left out), repeated times (the later rows left out), gaps in time, a run
+a required column without any value. Said as a warning of the run: values that are NaN, infinite or beyond 1e100 (kept
+as NaN), an optional column without any value (left out), repeated times (the later rows left out), gaps in time, a run
 shorter than a second, columns that are not of the contract (kept aside), and what gives away that somebody meant
 another unit by a column without one, which is SI.
 """
@@ -14,7 +14,7 @@ import numpy as np
 
 from winch_friction.physics.channels import plausible
 from winch_friction.physics.errors import InputError, Problems, counted, meant
-from winch_friction.physics.signals import GROUP_CHANNELS, FloatArray, Run, column_unit
+from winch_friction.physics.signals import GROUP_CHANNELS, FloatArray, Run, column_unit, readable
 from winch_friction.physics.winch.crane import ELECTRIC, HYDRAULIC, Crane, Drive
 
 # -- columns without a unit
@@ -102,6 +102,7 @@ def checked_run(
     if named:
         said.append(f"{name}: unknown columns kept aside: {', '.join(named)}")
     _check_rows(name, columns, aside)
+    columns = {column: readable(values) for column, values in columns.items()}
     problems = Problems()
     with problems:
         _check_time(name, columns, place)

@@ -297,4 +297,4 @@ def _jumping(values: FloatArray) -> np.ndarray:
 def _turning(speed: FloatArray) -> np.ndarray:
     """Two samples (samples,) on either side of a reversal: of a sparse log friction's step stands out alone there."""
     turns = np.concatenate([[False], np.sign(speed[:-1]) * np.sign(speed[1:]) < 0.0, [False]])
-    return np.asarray(np.convolve(turns, np.ones(4), "same")[1:] > 0.5)
+    return np.asarray(np.convolve(turns, np.ones(4), "same")[1 : len(speed) + 1] > 0.5)

@@ -107,9 +107,8 @@ class Correction:
                 f"{own.lower:g} ... {own.upper:g} {own.unit}"
             )
         if not lower <= self.value <= upper:
-            raise InputError(
-                f"correction '{self.name}': {self.value:g} {own.unit} is outside {lower:g} ... {upper:g} {own.unit}"
-            )
+            unit = "" if own.unit == "1" else f" {own.unit}"
+            raise InputError(f"correction '{self.name}': {self.value:g}{unit} is outside {lower:g} ... {upper:g}{unit}")
 
 
 def check_corrections(corrections: tuple[Correction, ...]) -> None:

@@ -34,6 +34,6 @@ def refuse_outside_seed(model: FrictionModel, seed: FrictionModel, fraction: flo
         slack = 1e-9 * max(abs(lower), abs(upper)) if name in allowed else 0.0
         if not lower - slack <= value <= upper + slack:
             raise InputError(
-                f"model '{model.name}': parameter {name} = {value:g} is outside {lower:g} ... {upper:g}, "
+                f"model '{model.name}': parameter {name} = {value:.9g} is outside {lower:g} ... {upper:g}, "
                 f"the range around the seed '{seed.name}'; the last good model is kept"
             )

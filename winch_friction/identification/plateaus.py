@@ -8,9 +8,9 @@ import numpy as np
 
 from winch_friction.physics.channels import RPM
 from winch_friction.physics.errors import InputError
-from winch_friction.physics.signals import FloatArray, Run
+from winch_friction.physics.signals import FloatArray, Run, held
 from winch_friction.physics.winch import Crane
-from winch_friction.physics.winch.crane import at_its_speeds, held, run_drum_torque
+from winch_friction.physics.winch.crane import at_its_speeds, run_drum_torque
 
 
 @dataclass(frozen=True)

@@ -15,9 +15,9 @@ from winch_friction.physics.channels import GROUP_CHANNELS, RPM
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.friction.term import needed
-from winch_friction.physics.signals import FloatArray, Run
+from winch_friction.physics.signals import FloatArray, Run, held
 from winch_friction.physics.winch import Crane, group_point, group_roles, operating_point
-from winch_friction.physics.winch.crane import held, run_drum_torque, run_rope_radius
+from winch_friction.physics.winch.crane import run_drum_torque, run_rope_radius
 from winch_friction.physics.winch.operating_point import CHANNEL_SIGNALS, LEAST_DISPLACEMENT, TELLING_STROKE
 
 LOW_SPEED = 250.0 * RPM  # paper 2: within 1 % of nominal above it

@@ -14,8 +14,8 @@ from winch_friction.importing.time_base import to_seconds
 from winch_friction.importing.units import CHANNEL_UNITS, conversion
 from winch_friction.physics.channels import limits_of
 from winch_friction.physics.errors import InputError, counted
-from winch_friction.physics.signals import GROUP_CHANNELS, FloatArray, Run
-from winch_friction.physics.winch.crane import Crane, held
+from winch_friction.physics.signals import GROUP_CHANNELS, FloatArray, Run, held
+from winch_friction.physics.winch.crane import Crane
 from winch_friction.records.run_checks import GAP, checked_run, rows_between
 from winch_friction.records.unit_names import conversion_to_si
 

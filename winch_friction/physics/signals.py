@@ -269,3 +269,12 @@ def layer_changes(run: Run, gear_ratio: float, speed_scale: float) -> LayerChang
     moving = np.sign(speed[np.abs(speed) > MOVING * speed_scale])
     turns = int(np.count_nonzero(np.diff(moving)))
     return LayerChanges(len(changed), near, (turns + 1) * int(np.ptp(layer)))
+
+
+def held(values: FloatArray) -> FloatArray:
+    """Values of which each holds over what is no number behind it, the first one before it too."""
+    known = np.isfinite(values)
+    if known.all() or not known.any():
+        return values
+    last = np.maximum.accumulate(np.where(known, np.arange(len(values)), 0))
+    return values[np.maximum(last, known.argmax())]

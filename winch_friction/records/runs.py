@@ -13,8 +13,8 @@ import numpy as np
 
 from winch_friction.physics.channels import GROUP_CHANNELS, SLOW_INPUTS
 from winch_friction.physics.errors import InputError, Problems, counted
-from winch_friction.physics.signals import FloatArray, Run, cut_off, ends_of_range
-from winch_friction.physics.winch.crane import Crane, held
+from winch_friction.physics.signals import FloatArray, Run, cut_off, ends_of_range, held
+from winch_friction.physics.winch.crane import Crane
 from winch_friction.records.run_checks import rows_between
 
 BAG_SUFFIXES = (".mcap", ".db3")

@@ -14,7 +14,7 @@ N times the measured torque.
 import math
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
-from functools import cached_property
+from functools import cached_property, lru_cache
 from operator import attrgetter
 from typing import Any, TypeVar
 
@@ -22,7 +22,7 @@ import numpy as np
 
 from winch_friction.physics.channels import GRAVITY, GROUP_CHANNELS, plausible
 from winch_friction.physics.errors import InputError
-from winch_friction.physics.signals import FloatArray, Run, Sample
+from winch_friction.physics.signals import FloatArray, Run, Sample, held
 
 # -- the drive
 HYDRAULIC, ELECTRIC, POWER, CURRENT = "hydraulic", "electric", "power", "current"
@@ -258,6 +258,14 @@ def driving_group(groups: Sequence[str]) -> str:
     return next((name for name in DRIVING if name in groups), groups[0])
 
 
+@lru_cache(maxsize=64)
+def group_roles(groups: tuple[str, ...]) -> tuple[float, ...]:
+    """The signal `role` of each of the motor groups that run, by their names."""
+    if len(groups) < 2:
+        return (0.0,) * len(groups)
+    return tuple(1.0 if name == driving_group(groups) else -1.0 for name in groups)
+
+
 def sample_drive_torque(sample: Sample, crane: Crane) -> float:
     """Torque of all motors at the shaft in N m from one sample, as the crane's drive makes it known."""
     return crane.drive.of_sample(sample, crane)
@@ -289,12 +297,3 @@ def run_rope_radius(run: Run, crane: Crane) -> FloatArray:
     layers = held(run.column("wire_layer"))
     radii = {layer: crane.drum.radius(layer) for layer in np.unique(layers[~np.isnan(layers)])}
     return np.array([radii.get(layer, crane.drum.radius(float("nan"))) for layer in layers])
-
-
-def held(values: FloatArray) -> FloatArray:
-    """Values of which each holds over what is no number behind it, the first one before it too."""
-    known = np.isfinite(values)
-    if known.all() or not known.any():
-        return values
-    last = np.maximum.accumulate(np.where(known, np.arange(len(values)), 0))
-    return values[np.maximum(last, known.argmax())]

@@ -9,7 +9,6 @@ wrong unit or somebody else's message.
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import lru_cache
 from operator import attrgetter
 from typing import Any, NamedTuple
 
@@ -18,7 +17,7 @@ import numpy as np
 from winch_friction.physics.channels import BAR, CM3_PER_REV, GRAVITY, LIMITS, RPM, WINCH, limits_of
 from winch_friction.physics.friction.compiled import DEFAULTS, ORDER, group_point, operating_point
 from winch_friction.physics.signals import FloatArray, Run, Sample
-from winch_friction.physics.winch.crane import Crane, driving_group
+from winch_friction.physics.winch.crane import Crane, group_roles
 
 
 # -- the direction of motion
@@ -120,14 +119,6 @@ _DIRECTION, _MAGNITUDE, _SPEED, _DRUM_TORQUE, _ACCELERATION, _MOTOR_TOTAL, _WIRE
     ORDER.index(name)
     for name in ("direction", "speed_magnitude", "speed", "drum_torque", "acceleration", "motor_total", "wire_layer")
 )
-
-
-@lru_cache(maxsize=64)
-def group_roles(groups: tuple[str, ...]) -> tuple[float, ...]:
-    """The signal `role` of each of the motor groups that run, by their names."""
-    if len(groups) < 2:
-        return (0.0,) * len(groups)
-    return tuple(1.0 if name == driving_group(groups) else -1.0 for name in groups)
 
 
 def sample_operating_point(

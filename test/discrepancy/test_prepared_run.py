@@ -123,7 +123,8 @@ def prepared(monkeypatch, mode=None, spikes=None, tension=False, wire=0.0, **mas
     for name, part in (
         ("see", lambda *_: seen), ("Balancing", lambda *_: balancing), ("load_of", load_of), ("_on_wire", on_wire),
         ("_settled", lambda *_: whole["settled"]), ("_rung_out", rung_out),
-        ("_followed", lambda *_: whole["followed"]), ("spikes_of", spiky), ("channels_of", lambda *_: {}),
+        ("beside_holes", lambda *_: True), ("_followed", lambda *_: whole["followed"]),
+        ("spikes_of", spiky), ("channels_of", lambda *_: {}),
         ("completed", lambda *_: SimpleNamespace(constants={"k": 2.0})),
     ):  # fmt: skip
         monkeypatch.setattr(module, name, part)

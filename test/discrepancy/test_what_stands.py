@@ -256,7 +256,7 @@ def test_fewer_names_are_tried_unless_one_is_what_every_machine_has(monkeypatch,
 
 
 def test_of_two_names_each_gives_way_to_its_rivals_where_the_locked_runs_refuse_them(monkeypatch):
-    """Last of all, and in its own place: beside a coarse law of the first, a wrong second one may do a little better."""
+    """Last of all, and in its own place: beside a coarse law of the first, a wrong second one may do better."""
     monkeypatch.setattr(module, "_with_at_most", lambda count, own, _: replace(own, selection=explained_by(own, count)))
     monkeypatch.setattr(module, "with_fewer", lambda _, own, slots, rng: replace(own, final=explained(slots)))
     monkeypatch.setattr(module, "decided", lambda own, selection, _: replace(own, selection=selection))

@@ -280,6 +280,15 @@ def test_runs_that_agree_closely_tell_beside_others_that_seem_damped_otherwise(a
     assert (found is None) if expected is None else found(9.0, 3e4) == pytest.approx(expected, rel=0.1)
 
 
+@pytest.mark.parametrize(("by_the_largest", "expected"), [(0.45, 0.27), (0.09, None)], ids=["rope", "filter"])
+def test_a_heavily_damped_rope_is_told_from_a_filter_by_what_more_damping_leaves(by_the_largest, expected):
+    """A soft rope of ratio 0.27 was taken for rigid, and what swung on it for a delay."""
+    left = (40.0, 17.0, 8.0, 5.0, 3.0, 1.4, 0.6, 0.16, 0.08, 0.5 * (0.08 + by_the_largest), by_the_largest)
+    modes = [(1.5 + 0.3 * k, 0.27 + 0.002 * k, 5e4) for k in range(4)] + [(2.0, 0.0, 3e4)] * 4
+    found = shared_damping(modes, [left] * 4 + [UNTOLD] * 4)
+    assert (found is None) if expected is None else found(2.0, 4e4) == pytest.approx(expected, rel=0.03)
+
+
 SWINGS = (0.9, 0.5, 0.2, 0.12, 0.2, *[0.5] * 6)  # of 0.05
 LIKE_A_FILTER = (1.5, 1.0, 0.8, 0.6, 0.5, *[0.4] * 6)
 ALIKE_BY_ANY = (0.32, *[0.3] * 10)  # a wrong inertia, which swings by no mode

@@ -225,7 +225,7 @@ def test_shapes_of_a_tare_and_of_a_radius_are_those_that_the_runs_log():
     }  # fmt: skip
     assert [each.values["layer"] for each in geometry._radius_shapes([run(), run(2.0, 2.1)])] == [0.0]
     layers = [each.values["layer"] for each in geometry._radius_shapes([run(2.0, 3.9), run(1.0)])]
-    assert layers == [0.0, 1.0, 2.0, 4.0, geometry.ONE_DEPTH, -4.0]
+    assert layers == [0.0, 1.0, 2.0, 4.0, geometry.ONE_DEPTH, geometry.THICKER, -4.0]
 
 
 @pytest.mark.parametrize(("hook", "wire", "names"), [

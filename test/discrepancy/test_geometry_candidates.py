@@ -11,6 +11,7 @@ from winch_friction.discrepancy.answer import GapOptions
 from winch_friction.discrepancy.candidates.candidate import ParameterEstimate, Shape, Sides
 from winch_friction.discrepancy.candidates.geometry import (
     ONE_DEPTH,
+    THICKER,
     geometry_candidates,
     layers_apart,
     radius_columns,
@@ -54,11 +55,19 @@ def test_a_radius_is_wrong_on_the_layers_that_its_shape_speaks_of():
     assert radius_columns(run(), {"layer": 2.0})[:, 0] == pytest.approx(whole * [0.0, 1.0, 1.0])
     assert radius_columns(run(), {"layer": -3.0})[:, 0] == pytest.approx(whole * [2.0, 1.0, 1.0])
     assert radius_columns(run(), {"layer": ONE_DEPTH})[:, 0] == pytest.approx(whole / LEVER)
+    thicker = [0.0, 0.1, 0.1] / LEVER  # of a rope that is a tenth of a metre thicker than the crane file's
+    assert radius_columns(run(), {"layer": THICKER})[:, 0] == pytest.approx(whole * thicker)
 
 
 @pytest.mark.parametrize(
     ("layer", "values"),
-    [(0.0, {1: 0.016, 2: 0.018}), (2.0, {2: 0.018}), (-2.0, {1: 0.016}), (-3.0, {1: 0.032, 2: 0.018})],
+    [
+        (0.0, {1: 0.016, 2: 0.018}),
+        (2.0, {2: 0.018}),
+        (-2.0, {1: 0.016}),
+        (-3.0, {1: 0.032, 2: 0.018}),
+        (THICKER, {2: 0.002}),
+    ],
 )
 def test_a_radius_error_becomes_metres_on_the_layers_concerned(layer, values):
     sides = Sides(SimpleNamespace(drum=SimpleNamespace(layer_radii=(0.8, 0.9))), ("main",), ())

@@ -87,7 +87,8 @@ class Grid:
 def prepared(monkeypatch, mode=None, spikes=None, tension=False, wire=0.0, **masks):
     """A run of which all parts are known; `masks` are the samples that each part lets through."""
     whole = {"moving": TIME > 1.0, "settled": TIME > 2.0, "rung": TIME[60] != TIME, "known": TIME[70] != TIME,
-             "followed": TIME[80] != TIME, "layer": TIME[90] != TIME, **masks}  # fmt: skip
+             "followed": TIME[80] != TIME, "layer": TIME[90] != TIME, "holes": TIME[85] != TIME,
+             **masks}  # fmt: skip
     ones, asked = np.ones(SIZE), {}
     motion = SimpleNamespace(
         used=whole["moving"], speed=2.0 * ones, acceleration=3.0 * ones, direction=ones, angle=400.0 * TIME
@@ -123,7 +124,8 @@ def prepared(monkeypatch, mode=None, spikes=None, tension=False, wire=0.0, **mas
     for name, part in (
         ("see", lambda *_: seen), ("Balancing", lambda *_: balancing), ("load_of", load_of), ("_on_wire", on_wire),
         ("_settled", lambda *_: whole["settled"]), ("_rung_out", rung_out),
-        ("_followed", lambda *_: whole["followed"]), ("spikes_of", spiky), ("channels_of", lambda *_: {}),
+        ("beside_holes", lambda *_: whole["holes"]), ("_followed", lambda *_: whole["followed"]),
+        ("spikes_of", spiky), ("channels_of", lambda *_: {}),
         ("completed", lambda *_: SimpleNamespace(constants={"k": 2.0})),
     ):  # fmt: skip
         monkeypatch.setattr(module, name, part)
@@ -159,7 +161,7 @@ def test_a_measured_force_stands_for_a_load_cell(monkeypatch, tension):
 
 def test_samples_count_that_every_part_lets_through_that_were_measured_and_are_no_spikes(monkeypatch):
     found, asked, _ = prepared(monkeypatch)
-    there = (TIME > 2.0) & ~np.isin(np.arange(SIZE), (60, 70, 80))
+    there = (TIME > 2.0) & ~np.isin(np.arange(SIZE), (60, 70, 80, 85))
     gap, used, dt = asked["spikes"]
     assert (gap, dt) == (4.0, DT)
     assert (used == there).all()

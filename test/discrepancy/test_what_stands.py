@@ -255,6 +255,25 @@ def test_fewer_names_are_tried_unless_one_is_what_every_machine_has(monkeypatch,
     assert len(list(module._sets(searched(SLOTS[0], replace(SLOTS[1], plain=plain)), RNG))) == sets
 
 
+def test_of_two_names_each_gives_way_to_its_rivals_where_the_locked_runs_refuse_them(monkeypatch):
+    """Last of all, and in its own place: beside a coarse law of the first, a wrong second one may do better."""
+    monkeypatch.setattr(module, "_with_at_most", lambda count, own, _: replace(own, selection=explained_by(own, count)))
+    monkeypatch.setattr(module, "with_fewer", lambda _, own, slots, rng: replace(own, final=explained(slots)))
+    monkeypatch.setattr(module, "decided", lambda own, selection, _: replace(own, selection=selection))
+
+    def explained_by(own, count):
+        return replace(own.selection, final=explained(own.selection.final.slots[:count]))
+
+    def asked(*slots):
+        search = searched(*slots)
+        found = [replace(each, rivals=(SLOTS[2 + k % 2],)) for k, each in enumerate(search.selection.found)]
+        own = replace(search, selection=replace(search.selection, found=tuple(found)))
+        return [each.selection.final.names for each in module._sets(own, RNG)]
+
+    assert asked(*SLOTS[:2]) == [("one", "two"), ("one",), ("three", "two"), ("one", "four")]
+    assert asked(*SLOTS[:3])[-1] == ("one",)  # of three, what company imitates is too much
+
+
 def test_a_name_has_no_more_rivals_than_a_set_has_room_for(monkeypatch):
     """Three dropped names do as well alone; a set has room for three in all."""
     monkeypatch.setattr(several, "adds", lambda *_: False)

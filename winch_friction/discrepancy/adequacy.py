@@ -8,7 +8,8 @@ import numpy as np
 from winch_friction.discrepancy.engine.blocks import stretch
 from winch_friction.discrepancy.expansion import Given, Split
 from winch_friction.discrepancy.preparation.grid import HOLE
-from winch_friction.discrepancy.preparation.prepare import FEWEST_MOVING, MOST_SETTLING, PreparedRun
+from winch_friction.discrepancy.preparation.prepare import FEWEST_MOVING, PreparedRun
+from winch_friction.discrepancy.preparation.rung_out import MOST_SETTLING
 from winch_friction.discrepancy.preparation.seen import at_one_speed
 from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.physics.errors import InputError
@@ -167,9 +168,8 @@ def of_names(untold: str) -> Check:
 
 
 def _untold(run: PreparedRun, crane: Crane) -> bool:
-    """Whether a run may hold a swing that it does not tell: none was found in heave compensation, what a found one
-    began with has not died when its samples begin to count, or they were too few to look for one on a wire that gives.
-    """
+    """Whether a run may hold a swing that it does not tell: none was found in heave compensation, one began with what
+    has not died when its samples count, or they were too few to look for one on a wire that gives."""
     frequency, damping = run.wire_mode[:2]
     if frequency <= 0.0:
         return bool(np.isfinite(crane.wire_stiffness) and run.used.sum() < FEWEST_MOVING)

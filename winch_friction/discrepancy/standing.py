@@ -112,11 +112,12 @@ def _sets(search: Search, rng: np.random.Generator) -> Iterator[Search]:
         if len(search.selection.final.names) < len(slots):  # one cause by two laws, but perhaps it is two
             yield decided(search, select(search.cross, rng, apart=True), rng)
         yield from (_with_at_most(count, search, rng) for count in reversed(counts))
-    if len(slots) == 1:  # what the locked runs refuse of one law they may grant a rival that does as well; but what the
-        # training runs refuse of it for what it leaves, only one that leaves less
+    if len(slots) in (1, 2):  # what the locked runs refuse of one law they may grant a rival that does as well; but
+        # what the training runs refuse of it for what it leaves, only one that leaves less
         most = search.cross.excess(search.selection.final) if search.verdict.leaves else np.inf
-        for rival in search.selection.found[0].rivals:
-            own = decided(search, with_fewer(search.cross, search.selection, (rival,), rng), rng)
+        for k, rival in [(k, rival) for k, each in enumerate(search.selection.found) for rival in each.rivals]:
+            swapped = (*slots[:k], rival, *slots[k + 1 :])
+            own = decided(search, with_fewer(search.cross, search.selection, swapped, rng), rng)
             if own.cross.excess(own.selection.final) < most:
                 yield own
 

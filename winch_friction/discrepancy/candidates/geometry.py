@@ -29,8 +29,8 @@ from winch_friction.physics.friction.correction import Correction
 from winch_friction.physics.friction.term import Parameter
 
 GAS = "accumulator_thermal"
-ONE_DEPTH = -999.0  # a label among the layer numbers
-ONE_METRE = 1.0  # then e_R is the depth in m
+ONE_DEPTH, THICKER = -999.0, -998.0  # labels among the layer numbers
+ONE_METRE, TENTH = 1.0, 0.1  # then e_R is the depth in m, or what a layer rises more than stated, in tenths of a metre
 FEWEST_APART = 2  # layers
 
 m_h = Parameter("m_h", "kg", 2000.0, lower=-2e4, upper=2e4, doc="mass that the load signal does not contain")
@@ -64,8 +64,9 @@ def radius_columns(run: PreparedRun, values: Values) -> FloatArray:
     torque, layer = _on_radius(run), run.channels.get("wire_layer")
     if values["layer"] == 0.0 or layer is None:
         return torque[:, None]
-    if values["layer"] == ONE_DEPTH:
-        return (torque * ONE_METRE / run.radius)[:, None]
+    if values["layer"] in (ONE_DEPTH, THICKER):
+        rises = ONE_METRE if values["layer"] == ONE_DEPTH else TENTH * (np.rint(layer) - 1.0)
+        return (torque * rises / run.radius)[:, None]
     if values["layer"] < 0.0:
         return (torque * (-values["layer"] - layer))[:, None]
     return (torque * (np.rint(layer) == values["layer"]))[:, None]
@@ -89,6 +90,7 @@ def _radius_shapes(runs: Sequence[PreparedRun]) -> list[Shape]:
     if len(layers) > 1:
         shapes += [Shape(f"layer {layer:g}", {"layer": layer}) for layer in layers]
         shapes.append(Shape("the same depth on all layers", {"layer": ONE_DEPTH}))
+        shapes.append(Shape("the rope's thickness", {"layer": THICKER}))
         shapes.append(Shape("growing with depth", {"layer": -layers[-1]}))
     return shapes
 
@@ -155,6 +157,8 @@ def _to_radius(found: Estimates, shape: Shape, sides: Sides) -> list[Correction]
     kind = shape.values["layer"]
     if kind == ONE_DEPTH:
         return [correction("layer_radius", found["e_R"])]
+    if kind == THICKER:  # or its lay on the drum: the innermost layer lies on the drum itself
+        return [correction("layer_radius", found["e_R"], TENTH * (k - 1.0), layers=(k,)) for k in radii if k > 1]
     if kind > 0.0:
         radii = {int(kind): radii[int(kind)]}
     depth = {k: -kind - k if kind < 0.0 else 1.0 for k in radii}

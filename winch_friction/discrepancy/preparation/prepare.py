@@ -10,6 +10,7 @@ from scipy.ndimage import binary_opening, maximum_filter1d
 
 from winch_friction.discrepancy.preparation.balance import SHOWS, SPARSEST, Accounted, Balance, Balancing, Groups
 from winch_friction.discrepancy.preparation.grid import Grid, spikes_of
+from winch_friction.discrepancy.preparation.rung_out import MOST_SETTLING, RINGS, USUAL_DAMPING, beside_holes
 from winch_friction.discrepancy.preparation.seen import GroupSignals, Motion, Seen, see, shared
 from winch_friction.discrepancy.preparation.suspended_load import Mode, SuspendedLoad, load_of, swinging_mass
 from winch_friction.discrepancy.preparation.wire_mode import Swing, swing_share, swinging_load, wire_stiffnesses
@@ -35,9 +36,6 @@ TURNS = 0.5  # rad of the wire's mode in a sample, from where on its swing bends
 FOLLOWED_FOR = 0.5  # s without a bend, for samples to count
 LEAST_FOLLOWED = 0.05  # of a run's moving samples; what is less is no part of the motion, but where it turns
 FEWEST_MOVING = 100  # samples in which a swing can be looked for
-USUAL_DAMPING = 0.05  # ratio of a load on a rope, by which is told when a swing from before the record hides no other
-RINGS = 2.0  # times the gap's deviation later in the run, by which its beginning swings
-MOST_SETTLING = 0.2  # of a run, left out at its beginning while the load may still swing from before
 BOTH_SIDES = 0.99  # of two samples that are in the regime or not, as a line between them says: only 1 is both
 HEAVIER = 0.01  # relative change of the drum torque for a derivative of the friction: small, but far above rounding
 DRUM_TORQUE = [signal.name for signal in WINCH_SIGNALS].index("drum_torque")
@@ -167,6 +165,7 @@ def prepare(
         motion.used
         & _settled(grid, mode)
         & _rung_out(grid, mode, balance.gap, motion.used)
+        & beside_holes(grid, mode, balance.gap, motion.used)
         & balancing.known
         & _followed(grid, motion, hanging, balance, crane, mode)
     )

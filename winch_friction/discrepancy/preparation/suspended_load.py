@@ -4,6 +4,7 @@ Where the rope's force, or the load's torque at the shaft, was measured, that is
 behind it need not be known.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
@@ -26,6 +27,8 @@ OUT_OF_TUNE, CLEARLY_CLOSER = 0.02, 0.5
 STILL, MOST_STILL = 2.0 / 3.0, 0.6  # of a wire's mass; of what hangs, of which a wire is nine tenths at most
 LONGEST_CLIMB = 10.0  # s, of a drum that stands by then
 SETTLED = 4.0  # decay times, down to 2 %
+# times the least share that is left, by the largest damping ratio: white noise leaves 1.03, a load of ratio 0.3 five
+FILTERED = 1.6
 
 
 class Mode(NamedTuple):
@@ -124,6 +127,15 @@ class SuspendedLoad:
 def swinging_mass(hanging: float, wire: float) -> float:
     """Mass in kg that swings where `wire` kg of it are its own: a third of these (Rayleigh, Theory of Sound)."""
     return hanging - STILL * wire if STILL * wire < MOST_STILL * hanging else hanging
+
+
+def no_filter(left: Sequence[float]) -> bool:
+    """Whether a load rings by its damping and by none larger: what a filter lets through of noise, as (1 + 4 ratio^2) /
+    (4 ratio) of white noise, is least by a ratio of a half and hardly more by the largest.
+
+    `left`: shares of what swings that are left by each damping ratio that is tried, ascending; none of an unknown.
+    """
+    return len(left) > 0 and left[-1] >= FILTERED * min(left)
 
 
 def heavy_by_tune(frequency: FloatArray, length: FloatArray, hanging: FloatArray, wire: FloatArray) -> bool:

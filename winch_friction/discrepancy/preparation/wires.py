@@ -6,7 +6,7 @@ from functools import partial
 import numpy as np
 
 from winch_friction.discrepancy.preparation.prepare import PreparedRun
-from winch_friction.discrepancy.preparation.suspended_load import STILL, Mode, heavy_by_tune
+from winch_friction.discrepancy.preparation.suspended_load import STILL, Mode, heavy_by_tune, no_filter
 from winch_friction.discrepancy.preparation.wire_mode import DAMPING_RATIOS, FOLLOWED, LEAST_GAIN, MOST_DAMPED, TOLD
 from winch_friction.physics.signals import NAN
 from winch_friction.physics.winch import Crane
@@ -61,13 +61,14 @@ def shared_damping(
     """The same from (frequency, ratio, mass) of all runs that can follow their mode, if enough agree closely.
 
     `untold` has for each of these runs what it leaves, as `Swing.left`; one that cannot tell has no vote. By chance the
-    runs would not find one damping.
-    """
+    runs would not find one damping."""
     swinging = np.array([mode for mode in modes if mode[1] > 0.0]).reshape(-1, 3)
     if len(swinging) < FEWEST_UNOPPOSED:
         return None
     frequency, ratio, mass = swinging.T
-    rigid = [mode for mode in zip(modes, untold or [()] * len(modes), strict=True) if mode[0][1] <= 0.0]
+    told = list(zip(modes, untold or [()] * len(modes), strict=True))
+    rigid = [each for each in told if each[0][1] <= 0.0]
+    sure = np.array([no_filter(left) for mode, left in told if mode[1] > 0.0])
 
     def enough(alike: np.ndarray, agreed: Callable[[float, float], float]) -> bool:
         against = sum(denies(left, agreed(own, load)) for (own, _, load), left in rigid)
@@ -78,7 +79,7 @@ def shared_damping(
     found = []
     for values in (2.0 * ratio * frequency * mass, ratio):
         alike = _closest(values)
-        if alike.sum() >= FEWEST_UNOPPOSED and np.median(ratio[alike]) < MOST_DAMPED / 2.0:
+        if alike.sum() >= FEWEST_UNOPPOSED and (np.median(ratio[alike]) < MOST_DAMPED / 2.0 or sure[alike].all()):
             agreed = agreed_damping(swinging[alike].tolist())
             found += [(agreed, alike.sum())] if agreed is not None and enough(alike, agreed) else []
     known = [(mode, own) for mode, own in zip(modes, untold, strict=False) if len(own) and mode[0] > 0.0]
@@ -223,8 +224,7 @@ def agreed_modes(prepared: Sequence[PreparedRun]) -> list[Mode]:
     All share what damps it: what two tell that ring as this wire makes their loads do; else what most that can tell
     agree on closely, unless most of heave compensation denies it, where reversals blur a swing but do not take it away
     (a load too light to show one has no vote); else what swings in all of them together. If none of these tells, heave
-    compensation decides, which excites the mode throughout, and of a sparse log the kicks of the others as well.
-    """
+    compensation decides, which excites the mode throughout, and of a sparse log the kicks of the others as well."""
     compensating = [run for run in prepared if len(run.groups) > 1] or list(prepared)
     able = [run for run in prepared if _slow(run, TOLD)]
     modes, variances = [(*run.wire_mode[:2], run.swinging) for run in able], [run.swing_variance for run in able]

@@ -123,7 +123,7 @@ def prepared(monkeypatch, mode=None, spikes=None, tension=False, wire=0.0, **mas
 
     for name, part in (
         ("see", lambda *_: seen), ("Balancing", lambda *_: balancing), ("load_of", load_of), ("_on_wire", on_wire),
-        ("_settled", lambda *_: whole["settled"]), ("_rung_out", rung_out),
+        ("settled", lambda *_: whole["settled"]), ("rung_out", rung_out),
         ("beside_holes", lambda *_: whole["holes"]), ("_followed", lambda *_: whole["followed"]),
         ("spikes_of", spiky), ("channels_of", lambda *_: {}),
         ("completed", lambda *_: SimpleNamespace(constants={"k": 2.0})),
@@ -178,7 +178,7 @@ def test_samples_count_that_every_part_lets_through_that_were_measured_and_are_n
     [(Mode(8.0, 0.0), 0.0), (Mode(0.0, 0.05), 0.0), (Mode(8.0, 0.2), 2.5), (Mode(8.0, 0.05), 0.2 * TIME[-1])],
 )
 def test_a_swing_from_before_dies_out_in_four_decay_times_and_at_most_a_fifth_of_a_run(mode, least):
-    settled = module._settled(SimpleNamespace(time=TIME), mode)
+    settled = module.settled(SimpleNamespace(time=TIME), mode)
     assert (settled == (least < TIME)).all() if least else settled.all()
 
 
@@ -190,7 +190,7 @@ def test_a_beginning_that_swings_twice_as_much_as_the_rest_is_left_out(louder, u
     """Of what moves: what a standing shaft shows at first is no swing."""
     time = 0.02 * np.arange(1000)
     gap = np.random.default_rng(0).standard_normal(1000) * np.where(time < until, louder, 1.0)
-    kept = module._rung_out(SimpleNamespace(time=time), Mode(3.0, 0.0), gap, time > stands)
+    kept = module.rung_out(SimpleNamespace(time=time), Mode(3.0, 0.0), gap, time > stands)
     assert (kept == (time > 0.2 * time[-1])).all() if left_out else kept.all()
 
 

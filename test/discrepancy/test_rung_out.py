@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 
 from winch_friction.discrepancy.preparation.grid import Grid
-from winch_friction.discrepancy.preparation.rung_out import beside_holes
-from winch_friction.discrepancy.preparation.suspended_load import Mode
+from winch_friction.discrepancy.preparation.suspended_load import Mode, beside_holes
 
 DT = 0.03
 TIME = np.arange(0.0, 200.0, DT)

@@ -10,7 +10,7 @@ from campaign.gap_hard_cases import all_cases, runs_of
 from campaign.rig import make_dataset
 from winch_friction.discrepancy.answer import GapOptions
 from winch_friction.discrepancy.expansion import meet
-from winch_friction.discrepancy.preparation.prepare import _rung_out, prepare
+from winch_friction.discrepancy.preparation.prepare import prepare, rung_out
 from winch_friction.discrepancy.preparation.suspended_load import STILL, Mode, heavy_by_tune, swinging_mass
 from winch_friction.discrepancy.preparation.wire_mode import DAMPING_RATIOS
 from winch_friction.discrepancy.preparation.wires import ASKED, ringing_damping, swinging_along
@@ -53,7 +53,7 @@ def test_a_swing_from_before_the_record_hides_no_wire(crane_150t, crane2_model):
 def test_what_swings_at_first_alone_is_left_out_on_a_wire_that_is_taken_for_rigid(mode, louder, left_out):
     time = np.arange(0.0, 100.0, 0.02)
     gap = np.random.default_rng(1).standard_normal(len(time)) * np.where(time < 10.0, louder, 1.0)
-    kept = _rung_out(SimpleNamespace(time=time), mode, gap, np.ones(len(time), bool))
+    kept = rung_out(SimpleNamespace(time=time), mode, gap, np.ones(len(time), bool))
     assert time[kept][0] == pytest.approx(left_out, abs=0.1)
 
 

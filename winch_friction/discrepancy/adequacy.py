@@ -8,9 +8,9 @@ import numpy as np
 from winch_friction.discrepancy.engine.blocks import stretch
 from winch_friction.discrepancy.expansion import Given, Split
 from winch_friction.discrepancy.preparation.grid import HOLE
-from winch_friction.discrepancy.preparation.prepare import FEWEST_MOVING, PreparedRun
-from winch_friction.discrepancy.preparation.rung_out import MOST_SETTLING
+from winch_friction.discrepancy.preparation.prepare import PreparedRun
 from winch_friction.discrepancy.preparation.seen import at_one_speed
+from winch_friction.discrepancy.preparation.suspended_load import FEWEST_MOVING, MOST_SETTLING
 from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.signals import FloatArray, Run

@@ -10,9 +10,18 @@ from scipy.ndimage import binary_opening, maximum_filter1d
 
 from winch_friction.discrepancy.preparation.balance import SHOWS, SPARSEST, Accounted, Balance, Balancing, Groups
 from winch_friction.discrepancy.preparation.grid import Grid, spikes_of
-from winch_friction.discrepancy.preparation.rung_out import MOST_SETTLING, RINGS, USUAL_DAMPING, beside_holes
 from winch_friction.discrepancy.preparation.seen import GroupSignals, Motion, Seen, see, shared
-from winch_friction.discrepancy.preparation.suspended_load import Mode, SuspendedLoad, load_of, swinging_mass
+from winch_friction.discrepancy.preparation.suspended_load import (
+    FEWEST_MOVING,
+    USUAL_DAMPING,
+    Mode,
+    SuspendedLoad,
+    beside_holes,
+    load_of,
+    rung_out,
+    settled,
+    swinging_mass,
+)
 from winch_friction.discrepancy.preparation.wire_mode import Swing, swing_share, swinging_load, wire_stiffnesses
 from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.physics.channels import BAR, CM3_PER_REV, GRAVITY
@@ -35,7 +44,6 @@ BENT_AWAY = 1.0 / 12.0
 TURNS = 0.5  # rad of the wire's mode in a sample, from where on its swing bends between samples at any rate
 FOLLOWED_FOR = 0.5  # s without a bend, for samples to count
 LEAST_FOLLOWED = 0.05  # of a run's moving samples; what is less is no part of the motion, but where it turns
-FEWEST_MOVING = 100  # samples in which a swing can be looked for
 BOTH_SIDES = 0.99  # of two samples that are in the regime or not, as a line between them says: only 1 is both
 HEAVIER = 0.01  # relative change of the drum torque for a derivative of the friction: small, but far above rounding
 DRUM_TORQUE = [signal.name for signal in WINCH_SIGNALS].index("drum_torque")
@@ -163,8 +171,8 @@ def prepare(
     mode = swing.mode
     used = (
         motion.used
-        & _settled(grid, mode)
-        & _rung_out(grid, mode, balance.gap, motion.used)
+        & settled(grid, mode)
+        & rung_out(grid, mode, balance.gap, motion.used)
         & beside_holes(grid, mode, balance.gap, motion.used)
         & balancing.known
         & _followed(grid, motion, hanging, balance, crane, mode)
@@ -215,7 +223,7 @@ def _wire_mode(balancing: Balancing, load: SuspendedLoad, rigid: Balance, wire: 
     stiffness = balancing.crane.wire_stiffness * mass / swinging_mass(mass, wire)  # a lighter load swings faster
     stiffnesses = wire_stiffnesses(stiffness, columns.get("wire_out"))
     slowest = Mode(float(np.sqrt(min(stiffnesses) / mass)), USUAL_DAMPING)
-    counts = motion.used & _settled(balancing.grid, slowest)
+    counts = motion.used & settled(balancing.grid, slowest)
     if counts.sum() < FEWEST_MOVING:
         return Swing(Mode(0.0, 0.0))
     # an inertia that is wrong hides a swing, and beside one that is right its column takes a part of the swing
@@ -234,25 +242,6 @@ def _other_causes(balancing: Balancing, load: SuspendedLoad, rigid: Balance) -> 
     motion = balancing.motion
     shifts = np.gradient(rigid.predicted - load.heave_torque), np.gradient(rigid.predicted)
     return np.column_stack([motion.speed, motion.direction * motion.speed**2, *shifts])
-
-
-def _settled(grid: Grid, mode: Mode) -> np.ndarray:
-    if min(mode.frequency, mode.damping) <= 0.0:
-        return np.ones(len(grid.time), bool)
-    return np.asarray(grid.time > min(mode.settling_time, MOST_SETTLING * grid.time[-1]))
-
-
-def _rung_out(grid: Grid, mode: Mode, gap: FloatArray, moving: np.ndarray) -> np.ndarray:
-    """Samples without a swing from before the record, on a wire that is taken for rigid though its stiffness is known:
-    what moves it so little later may have moved it much."""
-    everywhere = np.ones(len(gap), bool)
-    if mode.damping > 0.0:
-        return everywhere
-    later = _settled(grid, Mode(mode.frequency, USUAL_DAMPING))
-    begin, rest = gap[moving & ~later], gap[moving & later]
-    if min(len(begin), len(rest)) < FEWEST_MOVING:
-        return everywhere
-    return later if np.std(begin) > RINGS * np.std(rest) else everywhere
 
 
 def _followed(

@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from winch_friction.discrepancy.preparation.grid import Grid, recursive, smooth
+from winch_friction.discrepancy.preparation.grid import HOLE, Grid, recursive, smooth
 from winch_friction.discrepancy.preparation.seen import Motion
 from winch_friction.physics.channels import GRAVITY
 from winch_friction.physics.signals import CLIMBS, FloatArray, away_from
@@ -29,6 +29,11 @@ LONGEST_CLIMB = 10.0  # s, of a drum that stands by then
 SETTLED = 4.0  # decay times, down to 2 %
 # times the least share that is left, by the largest damping ratio: white noise leaves 1.03, a load of ratio 0.3 five
 FILTERED = 1.6
+USUAL_DAMPING = 0.05  # ratio of a load on a rope, by which is told when a swing from before the record hides no other
+RINGS = 2.0  # times the gap's deviation elsewhere in the run, by which its beginning, or what follows a hole, swings
+MOST_SETTLING = 0.2  # of a run, left out at its beginning while the load may still swing from before
+FEWEST_AFTER, FEWEST_ELSEWHERE = 20, 100  # samples: a deviation is known to a sixth, and to a fourteenth
+FEWEST_MOVING = 100  # samples in which a swing can be looked for
 
 
 class Mode(NamedTuple):
@@ -225,3 +230,50 @@ def _radius(grid: Grid, crane: Crane) -> FloatArray:
         for layer in np.unique(layers):
             radius[layers == layer] = crane.drum.radius(float(layer))
     return radius
+
+
+# -- a swing that is not that of the motion that was logged: it began before the record, or in a hole of it
+def settled(grid: Grid, mode: Mode) -> np.ndarray:
+    if min(mode.frequency, mode.damping) <= 0.0:
+        return np.ones(len(grid.time), bool)
+    return np.asarray(grid.time > min(mode.settling_time, MOST_SETTLING * grid.time[-1]))
+
+
+def rung_out(grid: Grid, mode: Mode, gap: FloatArray, moving: np.ndarray) -> np.ndarray:
+    """Samples without a swing from before the record, on a wire that is taken for rigid though its stiffness is known:
+    what moves it so little later may have moved it much."""
+    everywhere = np.ones(len(gap), bool)
+    if mode.damping > 0.0:
+        return everywhere
+    later = settled(grid, Mode(mode.frequency, USUAL_DAMPING))
+    begin, rest = gap[moving & ~later], gap[moving & later]
+    if min(len(begin), len(rest)) < FEWEST_MOVING:
+        return everywhere
+    return later if np.std(begin) > RINGS * np.std(rest) else everywhere
+
+
+def beside_holes(grid: Grid, mode: Mode, gap: FloatArray, moving: np.ndarray) -> np.ndarray:
+    """Samples without a swing from a hole of the record: nobody knows how the shaft moved there, and a load rings with
+    it for four decay times. Only after holes after which the gap deviates so much more than elsewhere: where the speed
+    went on as a line between its ends, nothing is unknown.
+
+    `gap` in N m; the wire's `mode` has its frequency in rad/s, and no damping where it is taken for rigid. (samples,)
+    """
+    found = np.ones(len(gap), bool)
+    if mode.frequency <= 0.0:
+        return found
+    mode = mode if mode.damping > 0.0 else Mode(mode.frequency, USUAL_DAMPING)
+    lasts = max(round(min(mode.settling_time, MOST_SETTLING * grid.time[-1]) / grid.dt), 1)
+    edges = np.diff(np.pad(grid.valid.astype(int), 1, constant_values=1))
+    begins, ends = np.flatnonzero(edges < 0), np.flatnonzero(edges > 0)
+    after = [slice(end, end + lasts) for begin, end in zip(begins, ends, strict=True) if end - begin >= HOLE - 1]
+    elsewhere = moving.copy()
+    for own in after:
+        elsewhere[own] = False
+    if not after or elsewhere.sum() < FEWEST_ELSEWHERE:
+        return found
+    usual = float(np.std(gap[elsewhere]))
+    for own in after:
+        tells = gap[own][moving[own]]
+        found[own] &= not (len(tells) >= FEWEST_AFTER and np.std(tells) > RINGS * usual)
+    return found

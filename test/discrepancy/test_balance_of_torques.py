@@ -94,7 +94,8 @@ def test_what_friction_is_reckoned_with_is_each_signal_in_its_own_place(monkeypa
     own, asked = balancing(monkeypatch, groups=[group("main", True, 2, 3e-5)], oil_temperature=40.0 * ONE, other=ONE)
     own.of(LOAD)
     point = asked[-1]
-    (count, pressure, displacement, total), *_ = point["groups"]
+    ((count, pressure, displacement, total, role),) = point["groups"]
+    assert role == 0.0
     assert (count[0], displacement[0]) == (2.0, 3e-5)
     assert pressure == pytest.approx(FRICTIONLESS / 6e-5 * ONE)
     assert total == pytest.approx(pressure + 2e6)

@@ -49,15 +49,17 @@ def test_what_is_drawn_is_in_the_unit_of_its_label():
 
 
 @pytest.mark.filterwarnings("error::RuntimeWarning")
-@pytest.mark.parametrize("broken", ["1e300", "1.5e308", "-1e308"])
-def test_a_value_that_no_sensor_can_mean_is_drawn_without_a_warning_of_the_libraries(tmp_path, broken):
+@pytest.mark.parametrize(
+    ("broken", "mean"), [("1e99", 1e99 / 15 / 1e5), ("1e300", 20.0), ("1.5e308", 20.0), ("-1e308", 20.0)]
+)  # beyond 1e100 it is none
+def test_a_value_that_no_sensor_can_mean_is_drawn_without_a_warning_of_the_libraries(tmp_path, broken, mean):
     header = "time,motor_speed [rpm],main.pressure_a [bar],main.pressure_b,main.displacement [cm^3/rev],hook_load\n"
     rows = (f"{0.1 * k},{60 + k},150,{broken if k in (2, 3) else 2e6},215,55e3\n" for k in range(30))
     (tmp_path / "r.csv").write_text(header + "".join(rows))
     crane, model = load_crane("crane_150t"), load_model("a6vm215_crane2")
     run = read_run(tmp_path / "r.csv", crane)
-    mean = next(row["mean"] for row in channel_rows(run) if row["channel"] == "main.pressure_b")
-    assert mean == pytest.approx(float(broken) / 15 / 1e5)
+    shown = next(row["mean"] for row in channel_rows(run) if row["channel"] == "main.pressure_b")
+    assert shown == pytest.approx(mean)
     assert write_run_page(tmp_path / "page.html", [run], crane, model).is_file()
 
 

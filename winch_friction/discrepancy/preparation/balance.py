@@ -190,7 +190,7 @@ class Balancing:
         columns, motion = self.grid.columns, self.motion
         size = len(self.grid.time)
         optional = {name: columns[name] for name in OPTIONAL if name in columns}
-        roles = group_roles(tuple(self.run.groups))
+        roles = group_roles(tuple(g.name for g in groups))
         signals = [
             group_point(np.full(size, float(g.count)), g.pressure, g.displacement, g.pressure_sum, role)
             for g, role in zip(groups, roles, strict=True)

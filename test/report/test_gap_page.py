@@ -147,6 +147,13 @@ def test_an_effects_evidence_is_its_own():
     ]
 
 
+def test_a_combination_is_told_in_the_unit_that_stands_behind_it():
+    """-1.364 bar stood there as -1.364e+05 bar: it was in Pa."""
+    combined = Combination("p_l - 0.957 * p_h", -136361.9, 12668.0, "Pa", "tied")
+    html = page._effect(effect(combination=combined), SimpleNamespace(model=SimpleNamespace(terms=())))
+    assert "p_l - 0.957 * p_h = -1.364 ± 0.13 bar (tied)." in html
+
+
 @pytest.mark.parametrize(
     ("variant", "parameters", "said"),
     [
@@ -168,14 +175,17 @@ def test_a_proposed_law_stands_with_what_it_leaves_on_locked_runs():
         "sentence": "friction in proportion to wire out",
         "latex": "x",
         "equation": "k*L",
-        "parameters": {"k": {"value": 0.5, "std": 0.1, "unit": "N*m/m"}},
+        "parameters": {
+            "k": {"value": 0.5, "std": 0.1, "unit": "N*m/m"},
+            "c": {"value": 80e5, "std": 3e5, "unit": "Pa"},
+        },
         "holdout": {"before": 3.0, "after": 0.5, "closed": 1.01},
         "terms_file": "p.py",
         "model_file": "p.yaml",
     }
     html = page._proposals(SimpleNamespace(content=lambda: {"proposals": [proposal]}, unit="bar"))
-    parameters, laws = rows(html)[1], rows(html)[-2:]
-    assert parameters == ["k", "0.5", "0.1", "N·m/m"]
+    parameters, laws = rows(html)[1:3], rows(html)[-2:]
+    assert parameters == [["k", "0.5", "0.1", "N·m/m"], ["c", "80", "3", "bar"]]
     assert laws == [
         ["equation, SI", "gap before [bar]", "gap after [bar]", "closed [%]", "terms", "model"],
         ["k*L", "3", "0.5", "100", "p.py", "p.yaml"],

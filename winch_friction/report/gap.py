@@ -28,6 +28,7 @@ from winch_friction.report.gap_words import (
 )
 from winch_friction.report.plots import plot_html
 from winch_friction.report.tables import (
+    estimate_for_people,
     for_people,
     number,
     paragraph,
@@ -92,16 +93,13 @@ def _effect(effect: Effect, result: GapResult) -> str:
     ]
     told = any(effect.variant.startswith(f"{name} =") for name in effect.parameters)
     term = _declared(effect)
-    combined = effect.combination
-    combination = (
-        paragraph(
+    combination = ""
+    if (combined := effect.combination) and not drawn:
+        value, std, unit = estimate_for_people(combined.value, combined.std, combined.unit)
+        combination = paragraph(
             f"What these runs determine, where its members are tied: {combined.expression} = "
-            f"{beside(combined.value, combined.std):.4g} ± "
-            f"{combined.std:.2g} {for_people(combined.unit)} ({combined.because})."
+            f"{value:.4g} ± {std:.2g} {unit} ({combined.because})."
         )
-        if combined and not drawn
-        else ""
-    )
     size = paragraph(f"Usual size: {text.size}.", "faint") if text.size else ""
     evidence = (
         f"Evidence ({effect.where}): p = {effect.p_value:.2g}; the error on data not fitted is lower by "
@@ -219,8 +217,8 @@ def _proposals(result: GapResult) -> str:
         + latex_html(p["latex"])
         + table_html(
             ("parameter", "value", "σ", "unit"),
-            [(name, beside(e["value"], e["std"]), e["std"], for_people(e["unit"]))
-             for name, e in p["parameters"].items()], digits=4,
+            [(name, *estimate_for_people(e["value"], e["std"], e["unit"])) for name, e in p["parameters"].items()],
+            digits=4,
         )
         for p in proposals
     )  # fmt: skip

@@ -202,7 +202,7 @@ def test_adequacy_says_what_these_runs_have_and_what_is_needed():
     assert rows(page._adequacy(result(adequacy=checks))) == [
         ["what a search needs", "these runs", "needed", "unit", "met"],
         ["moving time", "3", "15", "s", "no"],
-        ["top speed", "9", "4", "rpm", "yes"],
+        ["top speed", "85.9", "38.2", "rpm", "yes"],
     ]
 
 

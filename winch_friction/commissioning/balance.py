@@ -174,15 +174,16 @@ def _friction(view: RunView, model: FrictionModel | None) -> FloatArray:
 def friction_point(view: RunView) -> tuple[Any, ...]:
     """The operating point along a view, within what a friction law means."""
     size = view.time.shape
+    roles = group_roles(tuple(view.groups))
     groups = [
         group_point(
             np.full(size, g.count),
             np.clip(g.drop, -MOST_PRESSURE, MOST_PRESSURE),
             np.clip(g.displacement, 0.0, view.max_displacement),
             np.clip(g.pressure_sum, 0.0, 2.0 * MOST_PRESSURE),
-            role,
+            roles[name],
         )
-        for g, role in zip(view.groups.values(), group_roles(tuple(view.groups)), strict=True)
+        for name, g in view.groups.items()
     ]
     speed = np.clip(view.speed, -MOST_SPEED, MOST_SPEED)
     drum = np.clip(np.nan_to_num(static_torque(view)), -view.rated_torque, view.rated_torque) * view.gear_ratio

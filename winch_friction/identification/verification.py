@@ -220,14 +220,15 @@ def _points(
 ) -> tuple[Any, ...]:
     speed = _smooth(run, run["motor_speed"], 0)
     lower = {name: np.minimum(run[f"{name}.pressure_a"], run[f"{name}.pressure_b"]) for name in drop}
+    roles = group_roles(tuple(drop))
     groups = [
         group_point(
             np.full(len(run), float(crane.motor_count(name))), p,
             np.maximum(run[f"{name}.displacement"], LEAST_DISPLACEMENT),
             np.abs(p) + 2.0 * lower[name],
-            role,
+            roles[name],
         )
-        for (name, p), role in zip(drop.items(), group_roles(tuple(drop)), strict=True)
+        for name, p in drop.items()
     ]  # fmt: skip
     outer = np.full(len(run), float(len(crane.drum.layer_radii)))
     shown = {name: held(run[name]) for name in CHANNEL_SIGNALS if name in run}

@@ -103,16 +103,19 @@ class InputHealth:
 
     def _without(self, topic: str) -> str:
         """The columns that a topic's messages brought and do not any more, while another of theirs is young."""
-        hold, ages = self._gate.hold, self._gate.ages()
+        old, ages = self._old(topic), self._gate.ages()
         held = [each for each in self._gate.topics.inputs[topic].channels if each in ages]
-        old = [each for each in held if ages[each] > hold.limit(each)]
         return ", ".join(old) if len(old) < len(held) else ""
 
     def _lag(self, topic: str) -> float:
         """s by which what a topic says is too old by its stamps, although it comes; 0 when it is young enough."""
+        return max(self._old(topic).values(), default=0.0)
+
+    def _old(self, topic: str) -> dict[str, float]:
+        """The ages in s of a topic's columns that are too old."""
         hold, ages = self._gate.hold, self._gate.ages()
-        columns = [each for each in self._gate.topics.inputs[topic].channels if ages.get(each, 0.0) > hold.limit(each)]
-        return max((ages[each] for each in columns), default=0.0)
+        channels = self._gate.topics.inputs[topic].channels
+        return {each: ages[each] for each in channels if ages.get(each, 0.0) > hold.limit(each)}
 
     def _ahead(self, topic: str, arrived: float) -> float:
         """s by which the latest stamps of a topic were ahead of the speed's when it arrived, where that is more than

@@ -230,7 +230,11 @@ def _proposals(result: GapResult) -> str:
 
 
 def _adequacy(result: GapResult) -> str:
-    rows = [(c.what, c.value, c.needed, for_people(c.unit), "yes" if c.met else "no") for c in result.adequacy]
+    rows = [
+        (c.what, *(value_for_people(each, c.unit) for each in (c.value, c.needed)), for_people(c.unit),
+         "yes" if c.met else "no")
+        for c in result.adequacy
+    ]  # fmt: skip
     return table_html(("what a search needs", "these runs", "needed", "unit", "met"), rows, digits=3) if rows else ""
 
 

@@ -192,8 +192,8 @@ class Balancing:
         optional = {name: columns[name] for name in OPTIONAL if name in columns}
         roles = group_roles(tuple(g.name for g in groups))
         signals = [
-            group_point(np.full(size, float(g.count)), g.pressure, g.displacement, g.pressure_sum, role)
-            for g, role in zip(groups, roles, strict=True)
+            group_point(np.full(size, float(g.count)), g.pressure, g.displacement, g.pressure_sum, roles[g.name])
+            for g in groups
         ]
         return operating_point(
             direction=motion.direction, speed=motion.state_speed, drum_torque=load.drum_torque,

@@ -259,11 +259,11 @@ def driving_group(groups: Sequence[str]) -> str:
 
 
 @lru_cache(maxsize=64)
-def group_roles(groups: tuple[str, ...]) -> tuple[float, ...]:
-    """The signal `role` of each of the motor groups that run, by their names."""
+def group_roles(groups: tuple[str, ...]) -> Mapping[str, float]:
+    """The signal `role` of each of the motor groups that run, by its name."""
     if len(groups) < 2:
-        return (0.0,) * len(groups)
-    return tuple(1.0 if name == driving_group(groups) else -1.0 for name in groups)
+        return dict.fromkeys(groups, 0.0)
+    return {name: 1.0 if name == driving_group(groups) else -1.0 for name in groups}
 
 
 def sample_drive_torque(sample: Sample, crane: Crane) -> float:

@@ -134,10 +134,10 @@ def sample_operating_point(
     x[_DRUM_TORQUE], x[_ACCELERATION] = drum_torque, acceleration
     total = 0
     roles = group_roles(tuple(sample.groups))
-    for (name, g), role in zip(sample.groups.items(), roles, strict=True):
+    for name, g in sample.groups.items():
         a, b, count = g.pressure_a, g.pressure_b, crane.motor_count(name)
         total += count
-        x += count, abs(a - b), a + b, max(g.displacement, LEAST_DISPLACEMENT), -1.0 if a < b else 1.0, role
+        x += count, abs(a - b), a + b, max(g.displacement, LEAST_DISPLACEMENT), -1.0 if a < b else 1.0, roles[name]
     x[_MOTOR_TOTAL] = total if sample.groups else crane.motor_total(())
     return tuple(x)
 
@@ -164,7 +164,7 @@ def run_group(run: Run, crane: Crane, group: str) -> tuple[Any, ...]:
     """`group_point` of one group along a run."""
     a, b = run[f"{group}.pressure_a"], run[f"{group}.pressure_b"]
     displacement = np.maximum(run[f"{group}.displacement"], LEAST_DISPLACEMENT)
-    role = dict(zip(run.groups, group_roles(tuple(run.groups)), strict=True))[group]
+    role = group_roles(tuple(run.groups))[group]
     return group_point(np.full(len(run), crane.motor_count(group)), a - b, displacement, a + b, role)
 
 

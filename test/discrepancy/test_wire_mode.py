@@ -287,6 +287,8 @@ def test_a_heavily_damped_rope_is_told_from_a_filter_by_what_more_damping_leaves
     modes = [(1.5 + 0.3 * k, 0.27 + 0.002 * k, 5e4) for k in range(4)] + [(2.0, 0.0, 3e4)] * 4
     found = shared_damping(modes, [left] * 4 + [UNTOLD] * 4)
     assert (found is None) if expected is None else found(2.0, 4e4) == pytest.approx(expected, rel=0.03)
+    filtered = (*left[:9], 0.085, 0.09)
+    assert shared_damping(modes, [left] * 3 + [filtered] + [UNTOLD] * 4) is None  # each of them has to tell
 
 
 SWINGS = (0.9, 0.5, 0.2, 0.12, 0.2, *[0.5] * 6)  # of 0.05

@@ -118,7 +118,7 @@ def test_the_runs_that_swing_most_say_whether_a_heavy_wire_swings_along(telling,
     assert [own is not was for own, was in zip(after, before, strict=True)] == [along] * 8
 
 
-@pytest.mark.parametrize(("still", "along"), [(STILL, True), (0.0, False), (0.4, False)])
+@pytest.mark.parametrize(("still", "along"), [(STILL, True), (0.0, False), (0.4, False), (0.42, False)])
 def test_loads_that_ring_by_one_stiffness_say_whether_a_heavy_wire_swings_along(still, along):
     """Each run's own frequency makes up for the mass that is wrong, so that none swings less by another one; but of a
     25 t winch at 10 Hz the longest wires then gave all runs a stiffness 7 % too large, and a null kept 9 of 2 N m."""
@@ -140,7 +140,22 @@ def test_loads_that_ring_by_one_stiffness_say_whether_a_heavy_wire_swings_along(
     assert swinging_along(few, crane, lambda k, _: ringing(900.0, 25e3)) == few
 
 
-@pytest.mark.parametrize(("astray", "along"), [(0.03, True), (0.015, False)])
+def test_loads_that_ring_by_one_stiffness_as_they_are_ask_no_heavier_wire():
+    """A friction that rises at low speed made a heavy wire leave a fifth less of some swings; loads whose frequencies
+    one stiffness gave to a percent then rang by another mass each, 5 bar where the effect was 2."""
+    crane = SimpleNamespace(wire_mass=5.4, wire_stiffness=6e7)
+    left = tuple(0.02 + abs(np.log(ratio / 0.04)) for ratio in DAMPING_RATIOS)
+
+    def ringing(length, mass, less=1.0):
+        return SimpleNamespace(swinging=mass, channels={"wire_out": np.array([length])}, swing_noise=False,
+                               swing_left=tuple(less * each for each in left), swing_variance=100.0,
+                               wire_mode=Mode(float(np.sqrt(6e7 / length / mass)), 0.04))  # fmt: skip
+
+    runs = [ringing(*each) for each in [(750.0, 25e3), (850.0, 23e3), (250.0, 13e3), (230.0, 18e3), (470.0, 22e3)]]
+    assert swinging_along(runs, crane, lambda k, _: ringing(900.0, 25e3, 0.5)) == runs
+
+
+@pytest.mark.parametrize(("astray", "along"), [(0.03, True), (0.015, None)])
 def test_loads_that_are_in_tune_already_ask_for_no_other_mass(astray, along):
     """By less than a load is followed for, a third of the wire is no news, however well it fits."""
     heavier = 1.5 * (1.0 - np.exp(-2.0 * astray))
@@ -148,7 +163,9 @@ def test_loads_that_are_in_tune_already_ask_for_no_other_mass(astray, along):
     swinging = np.array(list(map(swinging_mass, hanging, wire)))
     frequency = np.sqrt(1e8 / length / swinging)
     assert np.std(np.log(frequency**2 * length * hanging)) == pytest.approx(astray, rel=1e-6)
-    assert heavy_by_tune(frequency, length, hanging, wire) == along
+    assert heavy_by_tune(frequency, length, hanging, wire) is along
+    swing_in_tune = np.sqrt(1e8 / length / hanging)
+    assert heavy_by_tune(swing_in_tune, length, hanging, wire) is (None if along is None else False)
 
 
 def test_runs_that_follow_no_mode_do_not_say_whether_it_is_one_damper_or_one_ratio():

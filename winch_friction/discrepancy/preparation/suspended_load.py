@@ -143,15 +143,18 @@ def no_filter(left: Sequence[float]) -> bool:
     return len(left) > 0 and left[-1] >= FILTERED * min(left)
 
 
-def heavy_by_tune(frequency: FloatArray, length: FloatArray, hanging: FloatArray, wire: FloatArray) -> bool:
+def heavy_by_tune(frequency: FloatArray, length: FloatArray, hanging: FloatArray, wire: FloatArray) -> bool | None:
     """Whether one stiffness gives loads their frequencies in rad/s if a third of their wires' mass swings along, and
     none does if all of what hangs swings: a run's own frequency makes up for its mass, one for all of them does not.
+    None where neither is clearly closer to one stiffness.
 
     By run: wire paid out in m, what hangs and the wire's part of it in kg.
     """
     swinging = np.array(list(map(swinging_mass, hanging, wire)))
     whole, along = (float(np.std(np.log(frequency**2 * length * mass))) for mass in (hanging, swinging))
-    return whole > OUT_OF_TUNE and along < CLEARLY_CLOSER * whole
+    if max(whole, along) <= OUT_OF_TUNE or min(whole, along) >= CLEARLY_CLOSER * max(whole, along):
+        return None
+    return along < whole
 
 
 def load_of(grid: Grid, motion: Motion, crane: Crane, known: float) -> SuspendedLoad:

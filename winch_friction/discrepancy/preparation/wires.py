@@ -13,9 +13,8 @@ from winch_friction.physics.winch import Crane
 
 # of the damping's logarithm; runs of one wire; the same where as many others do not object
 ALIKE, FEWEST_ALIKE, FEWEST_UNOPPOSED = 0.2, 4, 3
-# times what a run leaves on a rigid wire, from where on it denies the mode that others agree on: less a swing too small
-# to see may leave by chance (two deviations of twenty samples). On rigid wires runs with half the load or more left 2
-# to 10 000 times as much, on elastic ones none more than 1.0, of six winches each
+# times what a run leaves on a rigid wire, from where on it denies the mode that others agree on: less may be chance (of
+# twenty samples). Runs of half the load or more left 2 to 10 000 on rigid wires, 1.0 on elastic ones, of six winches
 DENIED = 1.2
 # of those that agree, how many may swing as well but seem damped otherwise, as a motion sensor's noise, a wrong inertia
 # and reversals make them: which are alike is no chance. Of the swinging, what nobody tells from nothing
@@ -179,7 +178,7 @@ def _one_ratio(ratio: float) -> Callable[[float, float], float]:
 
 
 def _left_by(left: Sequence[float], ratio: float) -> float:
-    """The share that a damping ratio leaves, between those of `DAMPING_RATIOS`; beyond them that of the last."""
+    """The share that a damping ratio leaves, between those of `DAMPING_RATIOS`; beyond them the last's."""
     return float(np.interp(np.log(ratio), np.log(DAMPING_RATIOS), left))
 
 
@@ -193,28 +192,29 @@ def _closest(values: np.ndarray) -> np.ndarray:
 def swinging_along(
     prepared: Sequence[PreparedRun], crane: Crane, again: Callable[[int, float], PreparedRun]
 ) -> list[PreparedRun]:
-    """Runs whose wire's own mass swings along where one stiffness then fits them, or those of heavy wires swing less:
-    nobody tells whether the cell feels the wire. `again` prepares a run so, by its place and its wire's mass in kg."""
-    weights = crane.wire_mass * np.array([np.nan_to_num(_length(run)) for run in prepared])
+    """Runs whose wire's own mass swings along where one stiffness then fits them, or, unless one fits already, those of
+    heavy wires swing less. `again` prepares a run so, by its place and its wire's mass in kg."""
+    weights = crane.wire_mass * np.nan_to_num([_length(run) for run in prepared])
     along = (STILL * weights > HEAVY * np.array([run.swinging for run in prepared])) & np.isfinite(crane.wire_stiffness)
     heavy = sorted(map(int, np.flatnonzero(along)), key=lambda k: -prepared[k].swing_variance)[:ASKED]
-    tried = {k: again(k, float(weights[k])) for k in heavy}
+    said = _by_one_stiffness(prepared, weights)
+    tried = {k: again(k, float(weights[k])) for k in heavy} if said is not False else {}
     less = [np.log(_least(own) / _least(prepared[k])) for k, own in tried.items()]
-    if not less or (np.sum(less) > -PLAINLY * min(len(less), TELLING) and not _one_stiffness(prepared, weights)):
+    if not (less and (said or np.sum(less) <= -PLAINLY * min(len(less), TELLING))):
         return list(prepared)
     return [tried.get(k) or again(k, float(weights[k])) for k in range(len(prepared))]
 
 
-def _one_stiffness(prepared: Sequence[PreparedRun], weights: np.ndarray) -> bool:
-    """Whether runs that ring do so by one stiffness of the wire only if its own mass swings along."""
+def _by_one_stiffness(prepared: Sequence[PreparedRun], weights: np.ndarray) -> bool | None:
+    """As `heavy_by_tune`, from the runs that ring: None of too few."""
     length, modes = [_length(run) for run in prepared], [(*run.wire_mode[:2], run.swinging) for run in prepared]
     sharp = _sharp(modes, [_said(run) for run in prepared], length)
-    frequency, _, mass = np.array(modes)[sharp].T
-    return len(sharp) >= FEWEST_ALIKE and heavy_by_tune(frequency, np.array(length)[sharp], mass, weights[sharp])
+    told = (np.array(modes)[sharp, 0], np.array(length)[sharp], np.array(modes)[sharp, 2], weights[sharp])
+    return heavy_by_tune(*told) if len(sharp) >= FEWEST_ALIKE else None
 
 
 def _least(run: PreparedRun) -> float:
-    """The share of what swings that the best damping leaves, 1 of a run that tells of none."""
+    """The share of what swings that the best damping leaves; 1: tells of none."""
     return min(*_said(run), 1.0) + SWINGS_LEFT if run.swing_left else 1.0
 
 

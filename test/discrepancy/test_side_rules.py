@@ -101,6 +101,19 @@ def test_a_plateau_has_lasted_before_its_samples_count_and_what_does_not_move_do
     np.testing.assert_allclose(rows[:, 1], 1.0)
 
 
+def test_the_first_stretch_begins_with_the_record():
+    """Five seconds each: one rad/s is lost in the first, two in the second, and none has a sample of the other."""
+    time = np.arange(0.0, 10.0, 0.02)
+    lost = np.where(time < 4.99, 1.0, 2.0)
+    group = SimpleNamespace(balances=True, pressure=np.full(len(time), 150e5), displacement=np.full(len(time), 3e-5))
+    prepared = SimpleNamespace(
+        time=time, start=0.0, dt=0.02, used=np.ones(len(time), bool), speed=50.0 - lost, acceleration=0.0 * time,
+        groups=[group], channels={},
+    )  # fmt: skip
+    rows = flow_balance._segments(_Run(time, np.full(len(time), 50.0)), prepared, 3, 1.0)
+    np.testing.assert_allclose(rows[:, 1], [1.0, 2.0], rtol=1e-9)
+
+
 class _Run:
     def __init__(self, time, command):
         self.time, self._command = time, command

@@ -354,3 +354,12 @@ def test_the_mass_that_a_load_lacks_is_told_by_a_run_of_five_blocks(blocks, said
     found = diagnose._free([view(groups={"main": GroupView(10.0, shown, 150e5 * ONE, 3e-5 * ONE)})])
     assert [each.factor for each in found if each.cause == "tare"] == [pytest.approx(500.0)] * said
     assert bool(found) == said
+
+
+@pytest.mark.parametrize("names", [("main",), ("active", "passive")])
+def test_a_group_s_own_scale_is_asked_where_another_group_tells_it(monkeypatch, names):
+    """The only group's scale is the load's, which is asked already."""
+    asked = {}
+    monkeypatch.setattr(diagnose, "free_mistakes", lambda views, factors, tare: asked.update(factors) or [])
+    diagnose._free([view(groups={name: GroupView(10.0, 90e5 * ONE, 150e5 * ONE, 3e-5 * ONE) for name in names})])
+    assert set(asked) == {"load", *(names if len(names) > 1 else ())}

@@ -238,6 +238,13 @@ def test_a_curve_of_the_load_weighs_as_much_as_one_without_at_400_kn_m_on_the_dr
     assert 10.0 < one < 40.0
 
 
+def test_an_oil_is_tried_that_thins_by_half_to_two_thirds_over_twenty_kelvin():
+    """ISO VG 46 of index 100 goes from 46 mm2/s at 40 degC to 21 at 60, a water glycol by a third."""
+    (own,) = [each for each in families.literature() if each.law_name == "viscosity_exponential"]
+    left = [float(np.exp(-20.0 * each.values["b_ve"])) for each in own.shapes([])]
+    assert 0.33 < min(left) < 0.5 < max(left) < 0.7
+
+
 def test_a_port_is_looked_for_where_oil_through_it_could_be():
     """D (D w)^n, and one power more of a passage that narrows with the stroke; other laws of the cause are as they
     were."""

@@ -58,6 +58,11 @@ def test_every_law_of_the_grammar_is_a_declared_term_with_units(law):
     )
 
 
+def test_a_law_about_a_value_is_tried_at_both_ends_and_in_the_middle():
+    about = vocabulary._constants("about", BY_NAME["wire_out"], [10.0, 20.0, 30.0, 40.0, 50.0], 40.0)
+    assert [each["c"] for each in about] == [10.0, 30.0, 50.0]
+
+
 def test_a_proposal_s_name_tells_laws_and_amounts_apart_in_four_signs():
     """Whoever finds the same law of the same amount again, to three figures, finds the same name."""
     law = Law((Factor("linear", "wire_out"),), opposing=True)

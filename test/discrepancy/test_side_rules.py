@@ -81,7 +81,7 @@ def test_stretches_of_two_runs_tell_no_leak():
     [((1.0, 1.0, 1.0), True), ((1.0, 1.0, 3.0), False), ((1.0,), False), ((3.0,) * 5, False), ((3.0,) * 6, True)],
 )
 def test_of_a_few_stretches_a_leak_explains_each(lost, holds):
-    """Of three rad/s by one it leaves two. That six of six get better is one chance in 64 and enough, five of five not."""
+    """Of three rad/s by one it leaves two; that six of six get better is one in 64 by chance, and enough."""
     rows = np.array([[0.0, each, 0.0, 0.0, 1.0, *[0.0] * (len(LEAKAGE_LAWS) - 1)] for each in lost])
     assert Leakage({"slip_leakage": (1.0, 0.1)}, 0.0, 0.0, 0.0, 1.0, 0.0).explains(rows) is holds
 

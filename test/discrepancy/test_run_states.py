@@ -237,11 +237,13 @@ def test_what_the_base_makes_as_well_is_known_by_how_sure_the_base_is():
     base = Base(("K",), 1, np.ones(1), np.zeros(1), -np.ones(1), np.ones(1))
     slot = Slot("brake", "", (1,))
     x = np.column_stack([wave * (run == 0), wave])
-    y = np.random.default_rng(5).standard_normal(len(run))
-    blocks = Blocks(y, x, run, run, np.ones(len(run)), {}, np.sign(wave), position)
-    problem = Problem(Layout(base, (slot,), np.ones(2), -np.ones(2), np.ones(2)), blocks, grams(blocks), {})
-    _, deviations = levels_of(problem, slot, runs)
-    assert deviations[0] > 1.5 * deviations[1:].max()
+    noise, found = np.random.default_rng(5).standard_normal(len(run)), []
+    for size in (2.0, 6.0):  # of what is left
+        blocks = Blocks(size * noise, x, run, run, np.ones(len(run)), {}, np.sign(wave), position)
+        problem = Problem(Layout(base, (slot,), np.ones(2), -np.ones(2), np.ones(2)), blocks, grams(blocks), {})
+        found.append(levels_of(problem, slot, runs)[1])
+    assert found[0][0] > 1.5 * found[0][1:].max()
+    assert found[1] == pytest.approx(3.0 * found[0], rel=0.02)
 
 
 def test_the_second_half_of_a_run_has_no_say_in_its_state():

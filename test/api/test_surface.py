@@ -5,6 +5,7 @@ import importlib
 import re
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -154,6 +155,12 @@ def test_runs_survive_pandas_and_xarray():
 def test_what_is_shown_in_a_notebook_says_something():
     crane, model = wf.load_crane("crane_150t"), wf.load_model("a6vm215_crane2")
     assert "gear ratio" in crane._repr_html_()
+    shown = [
+        " ".join(re.sub("<[^>]*>", " ", each._repr_html_()).split()) for each in (crane, replace(crane, groups={}))
+    ]
+    motors = " ".join(f"{name} {count}" for name, count in crane.groups.items())
+    assert f"motors by group {motors}" in shown[0].replace(",", "")
+    assert "motors by group 1 gear ratio" in shown[1]  # that no group names
     assert "stribeck" in repr(model)
     assert "Coulomb" in model._repr_html_()
 

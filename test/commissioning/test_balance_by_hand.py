@@ -250,6 +250,20 @@ def test_either_port_may_have_a_transducer_of_another_unit_of_a_hundred_times_at
     assert min(told["pressure"]) < 1e-4
 
 
+def test_a_speed_and_its_command_are_both_in_rpm_or_in_rad_s_where_they_are_in_another_unit(crane_150t):
+    """One PLC writes both; what a drive's own log has beside it, 1/s or deg/s, stands in one column."""
+    both = mistakes._units([view(rates={"speed_reference": 100.0 * ONE})], crane_150t, ("main",))
+    said = [each.words for each in both if each.words.startswith("motor_speed and speed_reference hold")]
+    assert [each.rpartition(" hold ")[2] for each in said] == ["rad/s under [rpm]", "rpm under [rad/s]"]
+
+
+@pytest.mark.parametrize(("seen", "doubted"), [(80, True), (50, True), (0, False)])
+def test_a_load_that_was_measured_for_a_while_may_be_in_another_unit(crane_150t, seen, doubted):
+    load = np.where(np.arange(80) < seen, 5e4, np.nan)
+    told = {each.channel for each in mistakes._units([view(load=load, rates={})], crane_150t, ("main",))}
+    assert ("hook_load" in told) is doubted
+
+
 @pytest.mark.parametrize(("slow", "moves"), [(2.9, False), (3.1, True), (-3.1, True), (-2.9, False)])
 def test_a_block_moves_from_three_per_cent_of_the_largest_speed_on(slow, moves):
     speed = np.where(np.arange(80) < 40, np.sign(slow) * 100.0, slow)
@@ -340,3 +354,12 @@ def test_the_mass_that_a_load_lacks_is_told_by_a_run_of_five_blocks(blocks, said
     found = diagnose._free([view(groups={"main": GroupView(10.0, shown, 150e5 * ONE, 3e-5 * ONE)})])
     assert [each.factor for each in found if each.cause == "tare"] == [pytest.approx(500.0)] * said
     assert bool(found) == said
+
+
+@pytest.mark.parametrize("names", [("main",), ("active", "passive")])
+def test_a_group_s_own_scale_is_asked_where_another_group_tells_it(monkeypatch, names):
+    """The only group's scale is the load's, which is asked already."""
+    asked = {}
+    monkeypatch.setattr(diagnose, "free_mistakes", lambda views, factors, tare: asked.update(factors) or [])
+    diagnose._free([view(groups={name: GroupView(10.0, 90e5 * ONE, 150e5 * ONE, 3e-5 * ONE) for name in names})])
+    assert set(asked) == {"load", *(names if len(names) > 1 else ())}

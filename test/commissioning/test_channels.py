@@ -21,6 +21,7 @@ from winch_friction.commissioning.commissioning import check
 from winch_friction.commissioning.excitation import Taught
 from winch_friction.commissioning.kinematics import excesses, range_score
 from winch_friction.commissioning.summaries import channel_findings
+from winch_friction.physics.errors import InputError
 from winch_friction.physics.signals import Run
 from winch_friction.records.crane_file import load_crane
 from winch_friction.records.model_file import load_model
@@ -44,6 +45,19 @@ def test_a_unix_time_in_another_unit_than_s_is_named(unit, factor):
     assert (found.severity, found.cause, found.channel) == ("error", "unit", "time")
     assert f"time holds {unit} under [s]" in found.sentence
     assert found.sentence.endswith(f"0.02 s; write 'time [{unit}]'")
+
+
+def test_a_run_whose_time_is_in_another_unit_is_left_out_of_the_balance(monkeypatch, crane_150t):
+    """Its accelerations are nobody's; the others are balanced without it."""
+    even = {"time": np.arange(9.0), "motor_speed": np.ones(9)}
+    runs = [Run("one", even), Run("in ms", even | {"time": 1.7e12 + 20.0 * np.arange(9.0)}), Run("two", even)]
+
+    def views_of(pairs):
+        raise InputError(" ".join(run.name for run, _ in pairs))
+
+    monkeypatch.setattr("winch_friction.commissioning.check.views_of", views_of)
+    with pytest.raises(InputError, match="^one two$"):
+        quick_check(runs, crane_150t)
 
 
 def test_a_time_in_ms_from_any_origin_shows_in_the_rates_that_other_channels_tell():

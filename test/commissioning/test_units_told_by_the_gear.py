@@ -54,6 +54,9 @@ def test_a_channel_in_numbers_says_what_share_of_it_is_missing():
     values = np.array([1.0, np.nan, 3.0, np.nan])
     (said,) = summaries(Run("r", {"time": np.arange(4.0), "wire_out": values}))
     assert (said.smallest, said.largest, said.missing) == (1.0, 3.0, 0.5)
+    (said,) = summaries(Run("r", {"time": np.arange(4.0), "wire_out": values * np.nan}))
+    assert np.isnan([said.smallest, said.largest]).all()
+    assert (said.missing, said.step) == (1.0, 0.0)
 
 
 def test_one_channel_far_beyond_the_machine_does_not_outweigh_every_other_sign():

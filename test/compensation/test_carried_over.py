@@ -33,6 +33,16 @@ def test_another_model_while_the_first_still_fades_in_makes_no_step():
     assert after - before[-1] == pytest.approx(before[-1] - before[-2], abs=3.0)
 
 
+def test_a_jump_that_was_announced_is_no_step_and_goes_within_the_ramp_time():
+    own, told = output(), output()
+    assert samples(own, 0, 50, 300.0)[-1] == samples(told, 0, 50, 300.0)[-1] == pytest.approx(300.0)
+    told.bump()
+    assert samples(own, 50, 1, 100.0) == [pytest.approx(100.0)]
+    after = samples(told, 50, 12, 100.0)
+    assert 270.0 < after[0] <= 300.0
+    assert after[-1] == pytest.approx(100.0, abs=1e-6)
+
+
 @pytest.mark.parametrize("reversal", [0.06, 0.1])
 def test_what_a_former_model_left_goes_with_the_rest_before_the_motion_turns(reversal):
     """An input is lost while 200 N m of the former model are still let go."""

@@ -206,11 +206,15 @@ def test_runs_that_keep_plainly_more_than_any_other_are_said(left, said):
 
 
 def left_of(levels, friction=0.0):
-    """What runs of 400 N m per unit and 40 kN m at a gear of 100 keep: a level each, and friction beside noise."""
+    """What runs of 400 N m per unit and 40 kN m at a gear of 100 keep: a level each, and friction beside noise. A wave
+    that makes twice the torque for a while is no load."""
     way = np.tile([1.0, -1.0, -1.0, -1.0], 50)
     noise = 0.2 * np.random.default_rng(3).standard_normal((len(levels), 200))
     after = np.array(levels)[:, None] + friction * way + noise
-    runs = [SimpleNamespace(drum_torque=np.full(5, 4e4), gear_ratio=100.0, unit_torque=4.0) for _ in levels]
+    runs = [
+        SimpleNamespace(drum_torque=np.array([4e4, -9e4, 4e4, 4e4, 4e4]), gear_ratio=100.0, unit_torque=4.0)
+        for _ in levels
+    ]
     blocks = SimpleNamespace(run=np.repeat(np.arange(len(levels)), 200), direction=np.tile(way, len(levels)))
     return SimpleNamespace(runs=runs, blocks=blocks, after=after.ravel(), floor=0.22)
 

@@ -227,6 +227,24 @@ def test_two_stribeck_curves_melt_into_one_between_them(speeds):
     assert both["C1"] == pytest.approx(4e-5, rel=0.15)
 
 
+def test_a_curve_of_the_load_weighs_as_much_as_one_without_at_400_kn_m_on_the_drum():
+    """Then neither width is nearer to the one that is left."""
+    of_load, plain = {"C1": 5.0 / 4e5, "C3": 0.0}, {"C1": 0.0, "C3": 5.0}
+    one, other = (
+        friction._one_stribeck({**narrow, "C4": 10.0}, {**wide, "C4": 40.0})["C4"]
+        for narrow, wide in ((of_load, plain), (plain, of_load))
+    )
+    assert one == pytest.approx(other, rel=1e-3)
+    assert 10.0 < one < 40.0
+
+
+def test_an_oil_is_tried_that_thins_by_half_to_two_thirds_over_twenty_kelvin():
+    """ISO VG 46 of index 100 goes from 46 mm2/s at 40 degC to 21 at 60, a water glycol by a third."""
+    (own,) = [each for each in families.literature() if each.law_name == "viscosity_exponential"]
+    left = [float(np.exp(-20.0 * each.values["b_ve"])) for each in own.shapes([])]
+    assert 0.33 < min(left) < 0.5 < max(left) < 0.7
+
+
 def test_a_port_is_looked_for_where_oil_through_it_could_be():
     """D (D w)^n, and one power more of a passage that narrows with the stroke; other laws of the cause are as they
     were."""
@@ -297,6 +315,14 @@ def test_a_curves_typical_size_is_a_twentieth_of_the_loads_torque_shared_by_the_
     own = families._free(families.Free("cause", (families.LOAD,), times, scope), [run])
     assert tables == [pytest.approx(typical)]
     assert (own.name, own.law_name, own.free, own.hydraulic) == ("cause", "curve", True, scope is Scope.MOTOR)
+    assert own.finer(None) is not None
+    assert own.finer(None).finer is None  # once
+    surface = families._free(families.Free("cause", (families.LOAD, families.SPEED), times, scope), [run])
+    assert surface.finer is None
+    tables[1:] = []
+    run.drum_torque = np.zeros(3)  # an empty hook: of 1 N m at the motor
+    families._free(families.Free("cause", (families.LOAD,), times, scope), [run])
+    assert tables[1:] == [pytest.approx(typical / 4000.0)]
 
 
 @pytest.mark.parametrize("side", ["both", "hoisting", "lowering"])

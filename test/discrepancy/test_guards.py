@@ -159,7 +159,8 @@ def test_a_name_may_leave_an_eighth_of_the_excess_but_not_a_fifth(left, kind):
 
 
 @pytest.mark.parametrize(
-    ("share", "p", "kind"), [(0.1, 1e-3, UNEXPLAINED), (0.06, 1e-3, NOTHING), (0.1, 0.02, NOTHING)]
+    ("share", "p", "kind"),
+    [(0.1, 1e-3, UNEXPLAINED), (0.08, 1e-3, UNEXPLAINED), (0.06, 1e-3, NOTHING), (0.1, 0.02, NOTHING)],
 )
 def test_what_a_signal_predicts_is_something_from_eight_per_cent_on(share, p, kind):
     cross = crossfit(noise())

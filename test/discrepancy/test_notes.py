@@ -9,7 +9,7 @@ import pytest
 from winch_friction.cli.gap_output import _found_as, _parameters, show_result
 from winch_friction.discrepancy import workflow
 from winch_friction.discrepancy.adequacy import Check, _divided, of_names
-from winch_friction.discrepancy.answer import MISSING, UNEXPLAINED, Side
+from winch_friction.discrepancy.answer import AMBIGUOUS, MISSING, UNEXPLAINED, Side
 from winch_friction.discrepancy.engine.blocks import Slot
 from winch_friction.discrepancy.engine.chance import Size
 from winch_friction.discrepancy.engine.selection import TAKEN, Considered, Finding, Selection
@@ -145,3 +145,21 @@ def test_a_result_has_the_names_that_its_file_has_and_says_with_what_the_rest_go
     assert result.effects == ((finding,) if final else ())
     assert told == ({"goes": ["sure"]} if final else {})
     assert ("inexact" in result.notes) is final
+
+
+@pytest.mark.parametrize(
+    ("kind", "hydraulic", "planned"), [(AMBIGUOUS, True, True), (AMBIGUOUS, False, False), (MISSING, True, False)]
+)
+def test_an_experiment_is_planned_for_the_first_effect_that_has_rivals_on_a_hydraulic_drive(
+    monkeypatch, kind, hydraulic, planned
+):
+    """No scenario of an electric drive can be written."""
+    monkeypatch.setattr(workflow, "plan_experiment", lambda *own: own[-3:])
+    found = [SimpleNamespace(slot=name, rivals=rivals) for name, rivals in (("a", ()), ("b", ("c",)), ("d", ("e",)))]
+    search = SimpleNamespace(
+        verdict=SimpleNamespace(kind=kind), selection=SimpleNamespace(found=found, final=None), expansion=None,
+        cross=None,
+    )  # fmt: skip
+    crane = SimpleNamespace(drive=SimpleNamespace(hydraulic=hydraulic))
+    own = workflow._experiment(crane, search, SimpleNamespace(seed=7))
+    assert own == (("b", ("c",), 7) if planned else None)

@@ -163,3 +163,16 @@ def test_only_names_that_fell_are_asked_beyond(monkeypatch, kind, searched, aske
     search = SimpleNamespace(verdict=SimpleNamespace(kind=searched))
     workflow._once_more(Study(SPLIT, None, GapOptions(), np.random.default_rng(0)), None, before, search)
     assert bool(calls) is asked
+
+
+@pytest.mark.parametrize(
+    ("names", "train", "locked", "simpler"),
+    [(1, 1.0, 1.0, True), (1, 1.1, 1.0, False), (1, 1.0, 1.1, False), (2, 0.5, 0.5, False), (3, 0.5, 0.5, False)],
+)
+def test_a_trial_is_simpler_by_fewer_names_that_leave_no_more_of_any_runs(names, train, locked, simpler):
+    def trial(count, *left):
+        sides = (SimpleNamespace(size_after=SimpleNamespace(value=each)) for each in left)
+        explanation = SimpleNamespace(names={str(k) for k in range(count)})
+        return SimpleNamespace(search=SimpleNamespace(explanation=explanation), train=next(sides), holdout=next(sides))
+
+    assert again._simpler(trial(2, 1.0, 1.0), trial(names, train, locked)) is simpler

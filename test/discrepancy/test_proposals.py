@@ -1,6 +1,7 @@
 """A law for what has no name: the search on arrays, the file of terms, and the way back in through the verbs."""
 
 import json
+import re
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -55,6 +56,19 @@ def test_every_law_of_the_grammar_is_a_declared_term_with_units(law):
     assert np.isfinite(
         model.compile(2).scalar_torque([1.0] * len(layout(2)), model.values, model.compile(2).initial_states)
     )
+
+
+def test_a_law_about_a_value_is_tried_at_both_ends_and_in_the_middle():
+    about = vocabulary._constants("about", BY_NAME["wire_out"], [10.0, 20.0, 30.0, 40.0, 50.0], 40.0)
+    assert [each["c"] for each in about] == [10.0, 30.0, 50.0]
+
+
+def test_a_proposal_s_name_tells_laws_and_amounts_apart_in_four_signs():
+    """Whoever finds the same law of the same amount again, to three figures, finds the same name."""
+    law = Law((Factor("linear", "wire_out"),), opposing=True)
+    names = [declare(law, amount).term.name for amount in (2.5, 2.5001, 2.51)]
+    assert all(re.fullmatch(r"proposal_wire_out_[0-9a-f]{4}", name) for name in names)
+    assert names[0] == names[1] != names[2]
 
 
 def test_the_sentence_has_the_constants_of_the_last_fit():

@@ -191,6 +191,18 @@ def test_a_line_holds_in_other_runs_by_its_chance_among_the_lines_near_it(monkey
     assert gammaincc(2, 11.8) < 1e-3
 
 
+@pytest.mark.parametrize(
+    ("order", "looked_at"), [(0.07, False), (0.14, True), (7.0, True), (18.4, True), (21.3, False)]
+)
+def test_a_ripple_is_looked_for_from_ten_turns_of_the_shaft_to_a_twentieth_of_one(order, looked_at):
+    angle = np.linspace(0.0, 300.0 * np.pi, 30_000)
+    noise = np.random.default_rng(4).normal(size=(4, len(angle)))
+    ones = np.ones(len(angle))
+    tables = [(angle, 0.3 * np.sin(order * angle) + each, ones, np.linspace(1.0, 2.0, len(angle))) for each in noise]
+    found = module.strongest_line(tables)
+    assert (found.p_value < 1e-10 and found.order == pytest.approx(order, abs=0.01)) is looked_at
+
+
 # -- one ripple for all runs
 @dataclass(frozen=True)
 class Own:

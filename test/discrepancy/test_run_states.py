@@ -229,6 +229,23 @@ def test_of_a_whole_run_all_samples_say_its_level():
     assert levels == pytest.approx([1.5, 1.5, 0.0, 0.0], abs=0.4)
 
 
+def test_what_the_base_makes_as_well_is_known_by_how_sure_the_base_is():
+    """A parameter that acts in one run alone as the candidate does: nobody tells its level there from it."""
+    count, runs = 100, 4
+    run, position = np.repeat(np.arange(runs), count), np.tile(np.arange(count), runs)
+    wave = np.sign(np.sin(position / 7.0))
+    base = Base(("K",), 1, np.ones(1), np.zeros(1), -np.ones(1), np.ones(1))
+    slot = Slot("brake", "", (1,))
+    x = np.column_stack([wave * (run == 0), wave])
+    noise, found = np.random.default_rng(5).standard_normal(len(run)), []
+    for size in (2.0, 6.0):  # of what is left
+        blocks = Blocks(size * noise, x, run, run, np.ones(len(run)), {}, np.sign(wave), position)
+        problem = Problem(Layout(base, (slot,), np.ones(2), -np.ones(2), np.ones(2)), blocks, grams(blocks), {})
+        found.append(levels_of(problem, slot, runs)[1])
+    assert found[0][0] > 1.5 * found[0][1:].max()
+    assert found[1] == pytest.approx(3.0 * found[0], rel=0.02)
+
+
 def test_the_second_half_of_a_run_has_no_say_in_its_state():
     """What begins in the middle of a run is no state of it: the first half says that it is not there."""
     rng = np.random.default_rng(5)

@@ -76,9 +76,12 @@ def test_stretches_of_two_runs_tell_no_leak():
     assert not flow_balance._enough(rows % (FEWEST_RUNS - 1))
 
 
-@pytest.mark.parametrize(("lost", "holds"), [((1.0, 1.0, 1.0), True), ((1.0, 1.0, 3.0), False), ((1.0,), False)])
+@pytest.mark.parametrize(
+    ("lost", "holds"),
+    [((1.0, 1.0, 1.0), True), ((1.0, 1.0, 3.0), False), ((1.0,), False), ((3.0,) * 5, False), ((3.0,) * 6, True)],
+)
 def test_of_a_few_stretches_a_leak_explains_each(lost, holds):
-    """Of three rad/s by one it leaves two."""
+    """Of three rad/s by one it leaves two; that six of six get better is one in 64 by chance, and enough."""
     rows = np.array([[0.0, each, 0.0, 0.0, 1.0, *[0.0] * (len(LEAKAGE_LAWS) - 1)] for each in lost])
     assert Leakage({"slip_leakage": (1.0, 0.1)}, 0.0, 0.0, 0.0, 1.0, 0.0).explains(rows) is holds
 
@@ -96,6 +99,19 @@ def test_a_plateau_has_lasted_before_its_samples_count_and_what_does_not_move_do
     rows = flow_balance._segments(_Run(time, command), prepared, 3, 1.0)
     assert rows[:, 0].tolist() == [3.0] * len(rows)
     np.testing.assert_allclose(rows[:, 1], 1.0)
+
+
+def test_the_first_stretch_begins_with_the_record():
+    """Five seconds each: one rad/s is lost in the first, two in the second, and none has a sample of the other."""
+    time = np.arange(0.0, 10.0, 0.02)
+    lost = np.where(time < 4.99, 1.0, 2.0)
+    group = SimpleNamespace(balances=True, pressure=np.full(len(time), 150e5), displacement=np.full(len(time), 3e-5))
+    prepared = SimpleNamespace(
+        time=time, start=0.0, dt=0.02, used=np.ones(len(time), bool), speed=50.0 - lost, acceleration=0.0 * time,
+        groups=[group], channels={},
+    )  # fmt: skip
+    rows = flow_balance._segments(_Run(time, np.full(len(time), 50.0)), prepared, 3, 1.0)
+    np.testing.assert_allclose(rows[:, 1], [1.0, 2.0], rtol=1e-9)
 
 
 class _Run:

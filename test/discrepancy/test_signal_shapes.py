@@ -26,6 +26,7 @@ from winch_friction.discrepancy.candidates.creep import creeping_candidates, cre
 from winch_friction.discrepancy.candidates.signals import (
     DELAYS,
     PRESSURES,
+    SMALL_DELAY,
     SPEED,
     bent_columns,
     bowed_warm_columns,
@@ -179,6 +180,12 @@ def test_a_late_speed_makes_what_follows_from_it_early_and_late_pressures_everyt
     pressures = delay_columns(one, {"ahead": 0.0, "behind": 0.1, "late": PRESSURES})
     assert speed[50] == pytest.approx(3.0)
     assert pressures[50] == pytest.approx(2.0 * TIME[50] - 0.1)
+
+
+def test_a_small_delay_is_looked_for_either_way_alike():
+    """Its sign is not known: of a square the slope is the one at the instant itself."""
+    of_square = SimpleNamespace(time=np.arange(101) * 0.01, from_speed=(np.arange(101) * 0.01) ** 2)
+    np.testing.assert_allclose(delay_columns(of_square, SMALL_DELAY)[5:-5, 0], 2.0 * of_square.time[5:-5])
 
 
 @pytest.mark.parametrize(

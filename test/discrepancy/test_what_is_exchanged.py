@@ -172,6 +172,20 @@ def test_of_two_names_the_one_that_came_last_gives_way_to_a_second_law_and_never
         assert _of_fewest_causes(cross, cross.explain((first, brake)), RNG).slots == expected
 
 
+def test_a_second_law_that_is_drawn_freely_pays_for_it_beside_two_names_as_well():
+    """It leaves a little less than the stated law, as whatever bends does."""
+    gear, brake = (Slot(name, "", (k,), plain=True) for k, name in ((2, "gear"), (3, "brake")))
+    third = Slot("third", "", (4,))
+    drawn, bent = Slot("gear", "", (5,), law="drawn", free=True), Slot("gear", "", (6,), law="bent")
+    last = {third: 2.01, drawn: 2.02, bent: 2.03}
+    cross = SimpleNamespace(
+        problem=SimpleNamespace(slots=(gear, brake, third, drawn, bent)), excess=lambda each: each.loss - 2.0,
+        floor=2.0, explain=lambda own: explained(own, last.get(own[-1], 50.0) if len(own) == 3 else 40.0),
+        train_loss=lambda own: (last.get(own[-1], 50.0) if len(own) == 3 else 40.0, None),
+    )  # fmt: skip
+    assert _of_fewest_causes(cross, cross.explain((gear, brake, third)), RNG).slots == (gear, brake, bent)
+
+
 def test_the_last_effect_of_a_set_is_never_superfluous(monkeypatch):
     """Whether it stands at all is asked by what added it."""
     monkeypatch.setattr(module, "_evidence", lambda *_: np.array([1.0]))

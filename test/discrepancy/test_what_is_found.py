@@ -49,9 +49,8 @@ def test_a_further_effect_is_useful_on_held_out_runs_and_on_those_it_is_fitted_t
     monkeypatch.setattr(module, "candidate_trials", lambda *_: [trial])
     monkeypatch.setattr(module, "_evidence", lambda *_: np.array([1e-4]))
     monkeypatch.setattr(module, "_exchanged", lambda _, own: own)
-    cross = SimpleNamespace(
-        gain=lambda *_: gain, inside_gain=lambda *_: inside, problem=SimpleNamespace(slots=(ONE, TWO))
-    )
+    saved = lambda share: lambda before, after: share if after is trial else -share
+    cross = SimpleNamespace(gain=saved(gain), inside_gain=saved(inside), problem=SimpleNamespace(slots=(ONE, TWO)))
     considered = []
     after = _forward(cross, base, current, RNG, 2, considered, {})
     assert (after is trial) is (outcome == "taken")

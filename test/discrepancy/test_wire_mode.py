@@ -334,6 +334,8 @@ def test_one_damper_for_all_runs_is_told_from_one_ratio():
     left = [tuple(np.minimum(0.05 + np.log(np.array(DAMPING_RATIOS) / ratio) ** 2, 1.0)) for ratio in own]
     found = pooled_damping(modes, left, [1.0] * 4)
     assert [found(frequency, mass) for frequency, _, mass in modes] == pytest.approx(own, rel=0.15)
+    small = pooled_damping(modes, left, [1e-6] * 4)  # of runs that all swing little, nothing else is told
+    assert [small(frequency, mass) for frequency, _, mass in modes] == pytest.approx(own, rel=0.15)
     assert pooled_damping(modes[:3], left[:3], [1.0] * 3) is None  # three may be chance
     assert pooled_damping(modes, [()] * 4, [1.0] * 4) is None
 

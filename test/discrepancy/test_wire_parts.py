@@ -131,6 +131,8 @@ def test_what_swings_is_judged_beside_other_causes_and_levels_of_its_own():
     assert judge.left(1, -1.0, 0.1) == pytest.approx(2.25, rel=0.01)
     assert judge.by_damping(1, 1.0) == pytest.approx([0.25] * len(DAMPING_RATIOS), rel=0.01)
     assert judge.swinging(1, wave) == pytest.approx(9.0 * 0.5, rel=0.05)
+    alone = _Judge(level + 2.0 * wave, counts, whole, [])  # a model without friction, and nothing else to hide it
+    assert alone.left(0, 1.0, 0.1) == pytest.approx(0.25, rel=0.01)
     other = judge.of(lambda frequency, ratio: 0.0 * wave)
     assert other.left(1, 2.0, 0.1) == pytest.approx(1.0)
     assert judge.left(1, 2.0, 0.1) == pytest.approx(0.0, abs=1e-6)

@@ -258,6 +258,7 @@ def test_a_restored_checkpoint_goes_on_with_the_same_parameters(crane, seed, run
         ("crane", "another", "crane is 'another'"),
         ("seed_values", [1.0], "seed_values is"),
         ("version", 0, "version is 0"),
+        ("version", 4, "version is 4, but this estimator has 5"),
         ("state", [0.0], "damaged"),
         ("covariance", None, "damaged"),
         ("covariance", "negative", "not those of a filter"),

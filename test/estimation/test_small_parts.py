@@ -415,6 +415,13 @@ def test_a_sample_that_is_rejected_leaves_the_load_as_it_was():
     assert each._load.mass == mass
 
 
+def test_an_estimator_counts_its_samples_from_nothing():
+    each = estimator()
+    assert set(each.counts.values()) == {0}
+    driven(20, each)
+    assert sum(each.counts[name] for name in ("accepted", "rejected", "restarted")) in (19, 20)  # the first begins
+
+
 @pytest.mark.parametrize(
     ("step", "state"), [(0.0, "rejected"), (-0.1, "rejected"), (-0.6, "restarted"), (0.6, "restarted"), (0.4, "no")]
 )

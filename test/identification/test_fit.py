@@ -189,6 +189,13 @@ def test_a_table_of_one_displacement_makes_a_seed_where_it_tells_all_parameters(
     assert identify_motor(largest, ["mj4"], with_complex=False).chosen.fitted.condition < 100.0
 
 
+def test_the_rows_that_count_are_those_that_were_asked_for(table_215):
+    own = FitRange(pressure=(100 * BAR, 250 * BAR))
+    found = identify_motor(table_215, ["mj4"], with_complex=False, fit_range=own)
+    rows, usual = (each.select(table_215) for each in (own, FitRange.usual(table_215)))
+    assert len(found.table.speed) == len(rows.speed) < len(usual.speed)
+
+
 def test_a_shape_of_nothing_is_not_exchanged_for_another():
     columns = np.array([[1.0, 0.0, 2.0], [1.0, 0.0, 3.0], [1.0, 0.0, 5.0]])
     assert exchangeable(columns, ("a", "shape", "b")) == ()

@@ -156,8 +156,8 @@ def test_a_practice_goes_from_table_to_motor_to_winch_and_is_held_against_all_te
     done = run_practice(folder, resamples=7, seed=3, complex_options={"restarts": 1})
     assert (asked.read, asked.usable) == (["a", "b", "h"], ["a", "b", "sea", "swell"])
     assert asked.motor[0] == "table"
-    assert {k: asked.motor[1][k] for k in ("chosen", "seed", "complex_options")} == {
-        "chosen": "mj4", "seed": 3, "complex_options": {"restarts": 1}
+    assert {k: asked.motor[1][k] for k in ("chosen", "seed", "complex_options", "force")} == {
+        "chosen": "mj4", "seed": 3, "complex_options": {"restarts": 1}, "force": False,
     }  # fmt: skip
     assert asked.seed == ("own_motor", {"data_sha256": {"f": "hash"}})
     assert asked.written == ("own", {"data_sha256": {"f": "hash"}})

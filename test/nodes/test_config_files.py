@@ -1,5 +1,6 @@
 """The shipped parameter files: every name is one that a node declares, every value one that it accepts."""
 
+import re
 from dataclasses import fields
 from pathlib import Path
 from typing import Any
@@ -62,6 +63,19 @@ def test_the_commented_file_shows_the_compensators_defaults() -> None:
     for each in fields(CompensatorConfig):
         if each.name not in ("load", "absolute_limit"):  # NaN, and the crane's own limit
             assert getattr(config, each.name) == getattr(CompensatorConfig(), each.name), each.name
+
+
+def test_what_is_commented_out_is_the_default() -> None:
+    """As the file says of itself."""
+    text = (NODES / "crane.yaml").read_text()
+    shown = {
+        name: yaml.safe_load(said) for name, said in re.findall(r"^ *# (\w+): (.+?)(?:  #.*)?$", text, re.MULTILINE)
+    }
+    defaults = {each.name: each.default for kind in KINDS["estimator"] for each in fields(kind)}
+    told = {name: value for name, value in shown.items() if name in defaults}
+    assert len(told) > 20
+    for name, value in told.items():
+        assert defaults[name] == (pytest.approx(value, rel=1e-3) if isinstance(value, float) else value), name
 
 
 def test_the_commented_file_names_every_setting() -> None:

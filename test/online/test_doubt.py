@@ -41,3 +41,13 @@ def test_what_may_come_to_a_doubt_is_pending_until_it_is_forgotten() -> None:
     assert doubt.pending
     told(doubt, False, 1.2)
     assert not doubt.pending
+
+
+def test_a_doubt_that_stands_is_pending_while_it_is_not_over() -> None:
+    """What was right for a moment after it is nothing yet."""
+    doubt = Doubt(1.0, calm=0.5)
+    assert told(doubt, True, 1.2)
+    assert told(doubt, False, 0.2)
+    assert doubt.pending
+    assert not told(doubt, False, 0.5)
+    assert not doubt.pending

@@ -100,6 +100,16 @@ def test_of_motors_that_are_not_all_shown_some_may_be_swung_out():
     assert not first_said(active, crane_topics(CRANE, ("active",)))[1]
 
 
+@pytest.mark.parametrize(("share", "doubted"), [(0.035, False), (0.07, True)])
+def test_a_pull_down_of_a_twentieth_of_the_rated_load_is_no_hook_s(share, doubted):
+    """Zeros of the transducers alone make a little of it."""
+    ranges = ChannelRanges(CRANE, ("main",))
+    each, load = DriveByItself(CRANE, ranges), share * 0.5 * ranges.load
+    said = {each.contradiction(sample, PERIOD) for sample in sea(20.0, lambda a, b: (b, a), load)}
+    assert (EXCHANGED_SAID in said) is doubted
+    assert said <= {"", EXCHANGED_SAID}
+
+
 def test_exchanged_ports_would_pull_the_load_down():
     when, why = first_said(sea(30.0, lambda a, b: (b, a)))
     assert why == EXCHANGED_SAID

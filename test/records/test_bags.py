@@ -12,6 +12,7 @@ from winch_friction.importing.reading import read_log
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.signals import Run
 from winch_friction.records.bag_file import open_bag
+from winch_friction.records.bag_storage import refused
 from winch_friction.records.bag_write import MESSAGES, BagWriter, write_bag
 from winch_friction.records.bags import bag_samples
 from winch_friction.records.runs import read_run, write_run
@@ -199,6 +200,14 @@ def test_of_a_file_that_was_cut_it_is_said_what_saves_it(tmp_path, kind, repair)
     for read in (read_run, read_log, lambda path: list(bag_frames(path, "", 0.0))):
         with pytest.raises(InputError, match=f"nothing is read .*{repair}"):
             read(path)
+
+
+def test_of_several_files_that_were_cut_the_first_is_named(tmp_path):
+    for name in ("a.mcap", "b.mcap"):
+        (tmp_path / name).write_bytes(b"\x89MCAP0\r\n")
+    said = str(refused(tmp_path, ValueError("it ends too soon")))
+    assert said.count("mcap recover") == 1
+    assert "mcap recover a.mcap" in said
 
 
 def test_fractions_need_the_crane(tmp_path, crane_150t):

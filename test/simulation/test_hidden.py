@@ -189,7 +189,21 @@ def test_what_only_takes_cannot_be_negative(name, ahc, crane_150t, crane2_model)
         simulate(ahc.override({"duration": 1.0}), crane_150t, crane2_model, hidden={name: -1.0})
 
 
-@pytest.mark.parametrize("name", ["gear_asymmetry", "tare_load", "pressure_offset", "inertia_error", "layer_radius"])
+@pytest.mark.parametrize(
+    "name",
+    [
+        "gear_asymmetry",
+        "gear_load_loss",
+        "wear_drift",
+        "port_turbulence",
+        "case_pressure",
+        "torque_ripple",
+        "tare_load",
+        "pressure_offset",
+        "inertia_error",
+        "layer_radius",
+    ],
+)
 def test_what_lies_on_either_side_may_be_negative(name):
     effect_names()
     EFFECTS[name].refuse(-1.0, "there")

@@ -211,6 +211,7 @@ def test_an_encoder_counts_to_the_nearest_and_each_pressure_has_its_own_noise():
     assert sensed(winch(), at(**TURNING | {"ANGLE": -100.3}))[0] == -100.5
     assert sensed(winch(), state, step=0.0)[:2] == pytest.approx([-100.2, 50.0])
     assert sensed(winch(passive_count=0.0), state)[3] == 0.0
+    assert sensed(winch(passive_count=1.0), state)[3] == pytest.approx(gas - 24e5 - 3e4)  # whatever takes it
 
 
 @pytest.mark.parametrize(("secondary", "torque"), [(0.0, 0.0), (1.0, 900.0), (1.0, -900.0)])

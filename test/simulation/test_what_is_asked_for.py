@@ -290,6 +290,23 @@ def plc(dropout, lost):
     return own
 
 
+def test_a_row_is_fresh_when_a_scan_has_come_since_the_last_step(monkeypatch):
+    """Sensors at 25 Hz whose rows come 10 ms late, read at 100 Hz."""
+    monkeypatch.setattr("winch_friction.simulation.simulator.run_periods", lambda *_: None)
+    taken, fresh = [], []
+    sensors = SimpleNamespace(delay=0.01, rate=25.0)
+    own = SimpleNamespace(
+        finished=False, tick=0, feedforward=np.zeros(20), _arguments=(), _scan=0, sample=None, _take=taken.append,
+        scenario=SimpleNamespace(sensors=sensors),
+    )  # fmt: skip
+    for k in range(1, 11):
+        own.time = 0.01 * k
+        Simulator.step(own)
+        fresh.append(own.fresh)
+    assert [k for k, each in enumerate(fresh, start=1) if each] == [5, 9]
+    assert taken == [1, 2]
+
+
 def test_a_lost_scan_is_a_row_of_nothing_or_no_row():
     there = plc("nan", False)
     assert (there.sample.time, there.sample.motor_speed, there.sample.hook_load, there.fresh) == (11.0, 3.0, 9.0, True)

@@ -33,7 +33,8 @@ def test_a_missing_effects_file_is_one_line(tmp_path, model, capsys):
 @pytest.mark.parametrize(
     "words",
     [
-        ["show", "MODEL"], ["show", "gap_drag"], ["compare", "a6vm215_crane2", "MODEL", "--crane", "crane_150t"],
+        ["show", "MODEL"], ["show", "gap_drag"], ["terms", "gap_drag"],
+        ["compare", "a6vm215_crane2", "MODEL", "--crane", "crane_150t"],
         ["simulate", "SCENARIO", "--model", "MODEL", "--out", "run.csv"],
         ["plot", "RUN", "--crane", "crane_150t", "--model", "MODEL", "--out", "page.html"],
     ],

@@ -225,6 +225,17 @@ def test_only_the_named_groups_are_touched(truth, crane_150t, crane2_model):
     np.testing.assert_allclose(run["passive.pressure_a"], truth["passive.pressure_a"] - BAR)
 
 
+def test_a_group_that_is_not_there_is_told_with_model_and_correction(crane_150t):
+    """Of five models and a crane it was said what the crane has, and not whose correction asked for another one."""
+    wrong = Correction("pressure_offset", BAR, groups=("active", "port"))
+    with pytest.raises(InputError, match="^model 'mine': correction 'pressure_offset': crane 'crane_150t' has no mot"):
+        corrected_crane(crane_150t, (wrong,), "mine")
+    with pytest.raises(InputError, match="^correction 'pressure_offset': .* 'port'; it has main, active, passive$"):
+        corrected_crane(crane_150t, (wrong,))
+    with pytest.raises(InputError, match="^model 'mine': correction 'layer_radius': .* has no wire layer 9$"):
+        corrected_crane(crane_150t, (Correction("layer_radius", 0.01, layers=(9,)),), "mine")
+
+
 def test_layers_and_inertia_go_into_the_crane(crane_150t):
     old = crane_150t.drum.layer_radii
     found = corrected_crane(

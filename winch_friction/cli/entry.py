@@ -2,12 +2,11 @@
 
 import os
 import signal
-from collections.abc import Callable
 from types import FrameType
 
-SAID, STATUS = b"winch-friction: interrupted\n", 130
+from winch_friction.cli.interrupts import end, listen
 
-Handler = Callable[[int, FrameType | None], object]
+SAID, STATUS = b"winch-friction: interrupted\n", 130
 
 
 def main() -> None:
@@ -17,23 +16,23 @@ def main() -> None:
     the middle of an import is a traceback, or another error. Where the work is done, one ends it without a word.
     """
     if signal.getsignal(signal.SIGINT) is not signal.default_int_handler:  # whoever called has it ignored
-        return _program(None)
+        return _program()
     signal.signal(signal.SIGINT, _leave)
     try:
-        _program(signal.default_int_handler)
+        _program(heard=True)
     except KeyboardInterrupt:
         _leave()
     finally:
-        signal.signal(signal.SIGINT, signal.SIG_DFL)
+        end()
     return None
 
 
-def _program(handler: Handler | None) -> None:
+def _program(heard: bool = False) -> None:
     """Load the program, let interrupts be its own matter, and run it."""
     from winch_friction.cli.main import main as program
 
-    if handler is not None:
-        signal.signal(signal.SIGINT, handler)
+    if heard:
+        listen()
     program()
 
 

@@ -16,6 +16,7 @@ from typer.core import TyperCommand, TyperGroup
 
 from winch_friction import __version__
 from winch_friction.cli import Modes
+from winch_friction.cli.interrupts import asked
 from winch_friction.physics.errors import InputError
 
 
@@ -163,7 +164,7 @@ def run(arguments: Sequence[str]) -> int:
     except Exception as error:
         if hasattr(error, "format_message"):  # a usage error of Typer's, from whichever click it carries
             return _bad_input(error.format_message() + _usage_hint(error))
-        return _defect(error)
+        return _said("interrupted", INTERRUPTED) if asked() else _defect(error)
 
 
 def _nobody_reads() -> int:

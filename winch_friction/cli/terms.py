@@ -5,7 +5,9 @@ from typing import Annotated
 import typer
 
 from winch_friction.cli.console import show_json, show_table
+from winch_friction.cli.inputs import load_terms
 from winch_friction.cli.names import KINDS, complete_term
+from winch_friction.cli.optional import OptionalPath
 
 
 def command(
@@ -13,6 +15,7 @@ def command(
         str, typer.Argument(help="One term: its equation, parameters, source.", autocompletion=complete_term)
     ] = "",
     markdown: Annotated[bool, typer.Option(help="The whole catalogue as Markdown, as in docs/terms.md.")] = False,
+    terms_file: Annotated[OptionalPath, typer.Option(help="Python file with friction terms of your own.")] = None,
     as_json: Annotated[bool, typer.Option("--json", help="As JSON.")] = False,
 ) -> None:
     """List the declared friction terms, or show one with its equation.
@@ -23,8 +26,11 @@ def command(
 
       winch-friction terms stribeck
 
+      winch-friction terms mine --terms-file mine.py
+
       winch-friction terms --markdown > docs/terms.md
     """
+    load_terms(terms_file)
     if name:
         from winch_friction.cli.show import show_physics as shown
         from winch_friction.physics.friction import term_named

@@ -17,7 +17,7 @@ from std_srvs.srv import SetBool, Trigger
 from winch_friction.nodes.beside import read_terms
 from winch_friction.nodes.inputs import Polled, diagnostic_array, diagnostic_status
 from winch_friction.nodes.loop import Clocks, Guarded, answered, said_aloud
-from winch_friction.nodes.options import FIXED, NodeOptions
+from winch_friction.nodes.options import FIXED, NodeOptions, refuse_crane_meanwhile
 from winch_friction.nodes.parameters import OptionParameters, check_qualities, declare_all, unknown_parameters
 from winch_friction.nodes.qos import fresh
 from winch_friction.physics.errors import InputError, Problems
@@ -55,12 +55,12 @@ class WinchNode(Clocks, Guarded, LifecycleNode):
         self._node_parameters = OptionParameters(NodeOptions, fixed=FIXED)
         self._settings = (self._node_parameters, *settings)
         declare_all(self, self._settings)
+        self._built = False  # there is something to halt
         self.options: NodeOptions = self._node_parameters.read(self)
         self.check_settings({})
         self.crane: Crane
         self._activated = float("inf")
         self._reported: object = None
-        self._built = False  # there is something to halt
         self._active_entities: list[Callable[[], Any]] = []
         self._switches: list[Any] = []
         self._publishers_made: list[Any] = []
@@ -101,6 +101,7 @@ class WinchNode(Clocks, Guarded, LifecycleNode):
         """Raise `InputError` when the settings with these changes do not fit; changes nothing."""
         for each in self._settings:
             each.read(self, changes)
+        refuse_crane_meanwhile(changes, self.options.crane if self._built else None)
 
     def apply_settings(self) -> None:
         """Take over changed parameters."""
@@ -290,9 +291,8 @@ class WinchNode(Clocks, Guarded, LifecycleNode):
 
     def _report(self, parts: Sequence[Health]) -> None:
         name = self.get_fully_qualified_name().lstrip("/")
-        crane = self.crane.name
-        statuses = [diagnostic_status(f"{name}: {p.part}", crane, p.level, p.summary, p.values) for p in parts]
-        self._diagnostics.publish(diagnostic_array(self.get_clock().now().to_msg(), statuses))
+        told = [diagnostic_status(f"{name}: {p.part}", self.crane.name, p.level, p.summary, p.values) for p in parts]
+        self._diagnostics.publish(diagnostic_array(self.get_clock().now().to_msg(), told))
 
 
 def _threshold() -> JumpThreshold:

@@ -1,8 +1,10 @@
 """What every node can be told, beside the settings of the object inside it."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
-from winch_friction.physics.errors import check, option
+from winch_friction.physics.errors import InputError, check, option
 from winch_friction.records.input_mapping import InputMapping
 
 
@@ -31,5 +33,15 @@ class NodeOptions(InputMapping):
         check(self)
 
 
-READ_WITH_MODEL = ("crane", "model_file", "terms_file")  # may change at any time, and count from the next reading on
+READ_WITH_MODEL = ("crane", "model_file", "terms_file")  # may change, and count from the next reading on
 FIXED = tuple(name for name in NodeOptions.__dataclass_fields__ if name not in READ_WITH_MODEL)
+
+
+def refuse_crane_meanwhile(changes: Mapping[str, Any], in_use: str | None) -> None:
+    """Raise `InputError` for another crane while a node is built on the one `in_use`; None: on none.
+
+    Files are read again by ~/load_model, the crane by configure alone: the parameter would tell of a machine that
+    nothing is computed for, and the next restart of the node's lifecycle change it unasked.
+    """
+    if in_use is not None and (wanted := changes.get("crane", in_use)) != in_use:
+        raise InputError(f"'{wanted}' as crane counts from configure on, '{in_use}' is in use: cleanup first")

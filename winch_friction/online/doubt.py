@@ -9,6 +9,7 @@ import math
 from dataclasses import dataclass, field
 
 from winch_friction.compensation.safe_output import AGAINST_SPEED
+from winch_friction.online.wire_way import MOST_APART, WireWay
 from winch_friction.physics.signals import Sample
 from winch_friction.physics.winch.crane import Crane, sample_drive_torque, sample_load
 from winch_friction.physics.winch.operating_point import ChannelRanges, has_torque, readings_of, shown_by
@@ -110,8 +111,6 @@ class StandingReadings:
 WIRE_STEP, WIRE_MEMORY, WIRE_TIME = 1.0, 20.0, 2.0
 LEAST_WAY, LEAST_STEPS = 1.0, 8  # m of wire, some steps of any counter, and comparisons: a few always lie on a line
 FOLLOWS = 0.8  # correlation from which one moves as the other does: of a wire that is a tenth of a wave late
-# times that one may be the other: falls, a layer or a gear ratio that is not the crane's. Revolutions a minute are 9.5
-MOST_APART = 3.0
 
 
 class WireAgainstSpeed:
@@ -119,7 +118,7 @@ class WireAgainstSpeed:
 
     def __init__(self, crane: Crane, ranges: ChannelRanges) -> None:
         self._crane, self._largest, self._moving = crane, ranges.speed, AGAINST_SPEED * crane.speed_scale  # rad/s
-        self._doubt, self._how, self._time = Doubt(WIRE_TIME), "", math.nan
+        self._doubt, self._how, self._time, self._way = Doubt(WIRE_TIME), "", math.nan, WireWay()
         self._begin(math.nan)
 
     def contradiction(self, sample: Sample, dt: float) -> str:
@@ -137,9 +136,9 @@ class WireAgainstSpeed:
     def _begin(self, reading: float) -> None:
         """Compare from a reading on, m, without what was summed up before."""
         self._wrong: bool | None = None
-        self._last, self._turned, self._passed = reading, 0.0, 0.0
-        self._speeds = self._wires = self._both = 0.0  # sums of squares and of products, m2
-        self._gone, self._steps = 0.0, 0  # m, comparisons
+        self._last, self._turned, self._passed, self._steps = reading, 0.0, 0.0, 0  # comparisons
+        self._speeds = self._wires = self._both = self._gone = 0.0  # sums of squares and of products, m2; m
+        self._way.forget()
 
     def _compare(self, sample: Sample) -> None:
         """One step more of both ways; a counter that was set, or shows nothing, begins anew."""
@@ -153,7 +152,9 @@ class WireAgainstSpeed:
         self._wires = self._wires * kept + wire * wire
         self._both = self._both * kept + way * wire
         self._gone, self._steps = self._gone * kept + max(abs(way), abs(wire)), self._steps + 1
-        self._last, self._turned, self._passed, self._wrong = sample.wire_out, 0.0, 0.0, self._differ()
+        goes_on = self._way.step(sample.time, way, sample.wire_out)
+        self._last, self._turned, self._passed, self._wrong = sample.wire_out, 0.0, 0.0, bool(goes_on) or self._differ()
+        self._how = goes_on or self._how
 
     def _differ(self) -> bool | None:
         """Whether the two are not one motion; None where the wire does not follow, or too little of it is known."""
@@ -269,8 +270,7 @@ class LoadAgainstDrive:
         return max(share, SMALLEST_TORQUE * lever * self._rated)
 
     def _tells(self, sample: Sample) -> bool:
-        moves = abs(sample.motor_speed) > self._moving
-        return moves and self._crane.drum.has(sample.wire_layer)
+        return abs(sample.motor_speed) > self._moving and self._crane.drum.has(sample.wire_layer)
 
     def _load(self, sample: Sample) -> float:
         shown = sample_load(sample)

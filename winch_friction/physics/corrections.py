@@ -47,7 +47,7 @@ def corrected(run: Run, crane: Crane, model: FrictionModel) -> tuple[Run, Crane]
     problems = [each for one in there for each in _missing(one, run)]
     if problems:
         raise InputError(f"{run.name}: {'; '.join(problems)} (model '{model.name}')")
-    right = corrected_crane(crane, model.corrections)
+    right = corrected_crane(crane, model.corrections, model.name)
     columns: Columns = dict(run.columns)
     for action in SIGNAL_ORDER:
         for each in there:
@@ -57,22 +57,27 @@ def corrected(run: Run, crane: Crane, model: FrictionModel) -> tuple[Run, Crane]
     return replace(run, columns=columns, metadata={**run.metadata, "corrections": names}), right
 
 
-def corrected_crane(crane: Crane, corrections: Sequence[Correction]) -> Crane:
+def corrected_crane(crane: Crane, corrections: Sequence[Correction], model: str = "") -> Crane:
     """The crane with the geometry and the inertia that corrections give it; unknown groups or layers, and what would
-    leave a radius or an inertia at or below zero, raise `InputError`."""
+    leave a radius or an inertia at or below zero, raise `InputError`, which names the `model` that has them."""
     radii, inertia = list(crane.drum.layer_radii), crane.inertia
+    whose = f"model '{model}': " if model else ""
     for each in corrections:
-        for group in each.groups:
-            crane.motor_count(group)
+        for group in (group for group in each.groups if group not in crane.groups):
+            known = ", ".join(crane.groups) or "none"
+            where = f"{whose}correction '{each.name}'"
+            raise InputError(f"{where}: crane '{crane.name}' has no motor group '{group}'; it has {known}")
         if each.declared.action is Action.RADIUS:
             for layer in each.layers or range(1, len(radii) + 1):
                 if not 1 <= layer <= len(radii):
-                    raise InputError(f"correction '{each.name}': crane '{crane.name}' has no wire layer {layer}")
+                    raise InputError(f"{whose}correction '{each.name}': crane '{crane.name}' has no wire layer {layer}")
                 radii[layer - 1] += each.value
         elif each.declared.action is Action.INERTIA:
             inertia += each.value
     if min(radii) <= 0.0 or inertia <= 0.0:
-        raise InputError(f"crane '{crane.name}': corrections leave a rope radius or the inertia at or below zero")
+        raise InputError(
+            f"{whose}crane '{crane.name}': corrections leave a rope radius or the inertia at or below zero"
+        )
     same = tuple(radii) == crane.drum.layer_radii and inertia == crane.inertia
     return crane if same else replace(crane, drum=Drum(tuple(radii)), inertia=inertia)
 

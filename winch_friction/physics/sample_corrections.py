@@ -27,7 +27,7 @@ class SampleCorrector:
                 raise InputError(
                     f"{name} must be a {kind.__name__} (wf.load_{name} reads one), found a {type(value).__name__}"
                 )
-        self.crane = corrected_crane(crane, model.corrections)
+        self.crane = corrected_crane(crane, model.corrections, model.name)
         foreign = [c for c in model.corrections if not c.declared.live]
         self._over = [c for c in foreign if c.ends < since]
         self.impossible = tuple(dict.fromkeys(c.name for c in foreign if not c.ends < since))

@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from winch_friction.physics.channels import GROUP_CHANNELS, SAMPLE_SCALARS, column_unit
+from winch_friction.physics.channels import GROUP_CHANNELS, SAMPLE_SCALARS, column_unit, limits_of
 from winch_friction.physics.errors import InputError, counted
 
 __all__ = [
@@ -278,3 +278,16 @@ def held(values: FloatArray) -> FloatArray:
         return values
     last = np.maximum.accumulate(np.where(known, np.arange(len(values)), 0))
     return values[np.maximum(last, known.argmax())]
+
+
+def shown_columns(run: Run) -> list[str]:
+    """The columns of a run that its samples show; of a motor group all, whether they are there or not."""
+    return [name for name in SAMPLE_SCALARS if name in run] + [f"{g}.{c}" for g in run.groups for c in GROUP_CHANNELS]
+
+
+def without_holes(run: Run) -> bool:
+    """Whether every channel of a run that is there says something plausible at every row: nothing is held then."""
+    return all(
+        name in run and bool(((run[name] >= limits_of(name)[0]) & (run[name] <= limits_of(name)[1])).all())
+        for name in shown_columns(run)
+    )

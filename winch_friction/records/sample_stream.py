@@ -19,8 +19,9 @@ from typing import Any
 import numpy as np
 
 from winch_friction.physics.channels import GROUP_CHANNELS, SAMPLE_SCALARS, SLOW_INPUTS, in_unit, limits_of, outside
-from winch_friction.physics.signals import FloatArray, GroupSample, Run, Sample
+from winch_friction.physics.signals import FloatArray, GroupSample, Run, Sample, shown_columns, without_holes
 from winch_friction.physics.winch.operating_point import Change, ChannelRanges
+from winch_friction.records.beyond import BeyondRange
 from winch_friction.records.topics import Input, TopicMap, stamp_time
 
 # -- holding
@@ -144,19 +145,6 @@ def group_columns(group: str) -> tuple[str, ...]:
     return tuple(f"{group}.{channel}" for channel in GROUP_CHANNELS)
 
 
-def shown_columns(run: Run) -> list[str]:
-    """The columns of a run that its samples show; of a motor group all, whether they are there or not."""
-    return [name for name in SAMPLE_SCALARS if name in run] + [c for g in run.groups for c in group_columns(g)]
-
-
-def without_holes(run: Run) -> bool:
-    """Whether every channel of a run that is there says something plausible at every row: nothing is held then."""
-    return all(
-        name in run and bool(((run[name] >= limits_of(name)[0]) & (run[name] <= limits_of(name)[1])).all())
-        for name in shown_columns(run)
-    )
-
-
 # -- what of a reading is believed
 UNKNOWN_AFTER = 1.0  # s without an accepted value: then the first one in range is believed, however far it is
 
@@ -168,6 +156,7 @@ class Plausibility:
     ranges: ChannelRanges
     _last: dict[str, tuple[float, float]] = field(default_factory=dict, init=False)
     _known: dict[str, tuple[float, float, Change | None]] = field(default_factory=dict, init=False)
+    _beyond: BeyondRange = field(default_factory=BeyondRange, init=False)
 
     def refusal(self, column: str, stamp: float, value: float) -> str:
         """Why a reading is not believed, in a few words; empty when it is."""
@@ -177,7 +166,10 @@ class Plausibility:
             self._known[column] = (*self.ranges.range(column), self.ranges.change(column))
         lower, upper, change = self._known[column]
         if not lower <= value <= upper:
+            self._beyond.note(column, stamp)
             return outside(column, value, lower, upper)
+        if self._beyond.ways and (again := self._beyond.refusal(column, stamp)):
+            return again
         if change is not None:
             last = self._last.get(column)
             if last is not None and self._too_fast(change, stamp - last[0], value - last[1]):
@@ -209,6 +201,7 @@ class Plausibility:
     def forget(self) -> None:
         """Another time begins."""
         self._last.clear()
+        self._beyond.ways.clear()
 
 
 # -- from messages to samples

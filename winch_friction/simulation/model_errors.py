@@ -100,7 +100,7 @@ def _put_mass(correction: Correction, scenario: Scenario, plant: np.void) -> Non
 
 
 def _put_geometry(model: FrictionModel, scenario: Scenario, crane: Crane, plant: np.void) -> None:
-    true = corrected_crane(crane, model.corrections)
+    true = corrected_crane(crane, model.corrections, model.name)
     ratio = true.drum.radius(scenario.wire_layer) / crane.drum.radius(scenario.wire_layer)
     plant["radius"] *= ratio
     plant["metres_per_radian"] *= ratio

@@ -65,7 +65,7 @@ def model_curve(
     `speed` in rad/s, default hoisting, 5 ... 2000 rpm or as far as the crane can run (`usual_speeds`); the group that
     drives is `main`, or the crane's first. Raises `InputError` for a load, setting or speed that cannot be.
     """
-    model, crane = completed(model, crane), corrected_crane(crane, model.corrections)
+    model, crane = completed(model, crane), corrected_crane(crane, model.corrections, model.name)
     setting = crane.max_displacement if displacement is None else float(displacement)
     if load < 0.0 or not np.isfinite(load):
         raise InputError(f"load {load:g} kg: give the hanging mass, 0 or more")

@@ -1,0 +1,110 @@
+"""A speed that goes on one way while the wire comes and goes: no unit and no direction makes that of one motion."""
+
+import math
+from dataclasses import replace
+
+import pytest
+from sea import CRANE
+
+from winch_friction.online.agreement import Agreement
+from winch_friction.online.doubt import WireAgainstSpeed
+from winch_friction.online.wire_way import WireWay
+from winch_friction.physics.signals import Sample
+from winch_friction.physics.winch.operating_point import ChannelRanges
+
+LEVER = CRANE.drum.radius(1.0) / CRANE.gear_ratio  # m of wire per radian of a motor
+PERIOD = 0.02  # s
+
+
+def voyage(change=lambda speed, k: speed, shown=lambda wire, k: wire, seconds=70.0, wave=8.0, speed=90.0, haul=0.0):
+    """Samples of a sea, s and rad/s; `haul` rad/s besides; `change` of the speed that is sent, `shown` of the wire."""
+    omega = 2.0 * math.pi / wave
+    for k in range(int(seconds / PERIOD)):
+        time = k * PERIOD
+        wire = 300.0 - LEVER * (speed / omega * (1.0 - math.cos(omega * time)) + haul * time)
+        now = change(speed * math.sin(omega * time) + haul, k)
+        yield Sample(time, now, speed_reference=now, wire_out=shown(wire, k), wire_layer=1.0)
+
+
+def said(samples):
+    """When it was said first, s, and in which words."""
+    own = WireAgainstSpeed(CRANE, ChannelRanges(CRANE))
+    for k, sample in enumerate(samples):
+        if words := own.contradiction(sample, PERIOD if k else 0.0):
+            return sample.time, words
+    return math.inf, ""
+
+
+def stands_with_noise(_, k):
+    """Frozen at 80 rad/s, an analogue value with a noise of a few counts."""
+    return 80.0 + 0.16 * math.sin(12.9 * k)
+
+
+@pytest.mark.parametrize("shown", [
+    lambda wire, k: wire,
+    lambda wire, k: 0.1 * round(10.0 * wire),  # in steps of 0.1 m
+    lambda wire, k: wire + 0.02 * math.sin(7.7 * k),  # with noise
+], ids=["smooth", "steps", "noise"])  # fmt: skip
+@pytest.mark.parametrize("change", [stands_with_noise, lambda speed, k: speed + 60.0, lambda speed, k: abs(speed)],
+                         ids=["frozen", "offset", "without sign"])  # fmt: skip
+def test_a_speed_that_goes_on_one_way_contradicts_a_wire_that_comes_and_goes(change, shown):
+    """With the command of the same program the friction of one way was fed forward for good: against the motion for
+    half of each wave, 22 of 45 s, and nothing said so."""
+    first, words = said(voyage(change, shown))
+    assert first < 45.0
+    assert words.startswith("motor_speed contradicts wire_out: it goes on for ")
+
+
+def test_it_is_said_among_the_contradictions():
+    own = Agreement(CRANE, ChannelRanges(CRANE))
+    found = [own.contradictions(sample) for sample in voyage(stands_with_noise, seconds=50.0)]
+    assert found[-1][0].startswith("motor_speed contradicts wire_out: it goes on for ")
+
+
+def filtered(time_constant):
+    """A display that follows slowly, s."""
+    state = []
+
+    def show(wire, k):
+        state.append(wire if not state else state[-1] + PERIOD / time_constant * (wire - state[-1]))
+        return state[-1]
+
+    return show
+
+
+@pytest.mark.parametrize("wave", [5.0, 8.0, 11.0, 18.0])
+@pytest.mark.parametrize("haul", [0.0, 30.0])
+@pytest.mark.parametrize("counter", [
+    lambda: lambda wire, k: wire, lambda: filtered(5.0), lambda: filtered(10.0), lambda: lambda wire, k: 0.5 * wire,
+    lambda: lambda wire, k: round(wire),
+], ids=["smooth", "5 s", "10 s", "two falls", "metres"])  # fmt: skip
+def test_a_sound_winch_is_not_told_from_its_wire(wave, haul, counter):
+    assert said(voyage(shown=counter(), wave=wave, haul=haul, speed=300.0))[0] == math.inf
+
+
+def test_a_dead_counter_tells_nothing():
+    """Standing, with the noise of an analogue input, or from some moment on."""
+    for shown in (
+        lambda wire, k: 300.0,
+        lambda wire, k: 300.0 + 0.3 * math.sin(12.9 * k * k),
+        lambda wire, k: wire if k < 1000 else 300.0,
+        lambda wire, k: 300.0 + 0.2 * math.sin(0.004 * k),  # it wanders
+    ):
+        assert said(voyage(shown=shown, haul=60.0))[0] == math.inf
+
+
+def test_a_counter_that_was_set_begins_anew():
+    """What the speed went before is not held against what it shows from then on."""
+    own = WireAgainstSpeed(CRANE, ChannelRanges(CRANE))
+    for k, sample in enumerate(voyage(seconds=30.0, haul=60.0)):
+        own.contradiction(sample, PERIOD if k else 0.0)
+    assert own._way.gone != 0.0
+    own.contradiction(replace(sample, time=sample.time + 1.1, wire_out=0.0), PERIOD)
+    assert own._way.gone == 0.0
+
+
+def test_it_needs_most_of_its_time():
+    way = WireWay()
+    words = [way.step(float(k), 0.5, 300.0 + math.sin(0.8 * k)) for k in range(60)]
+    assert not any(words[:36])
+    assert all(words[36:])

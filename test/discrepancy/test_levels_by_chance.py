@@ -44,7 +44,7 @@ def trial_of(gap, slot, others=34, column=None, runs=RUNS):
     )
     expansion = SimpleNamespace(cross=lambda names, known: cross, layout=SimpleNamespace(slot_like=lambda each: each))
     side = SimpleNamespace(least_noise=LEAST, runs=[SimpleNamespace(name=f"run {k}") for k in range(RUNS)])
-    search = SimpleNamespace(expansion=expansion, explanation=SimpleNamespace(slots=(slot,)))
+    search = SimpleNamespace(cross=cross, expansion=expansion, explanation=SimpleNamespace(slots=(slot,)))
     return SimpleNamespace(search=search, train=side, holdout=side)
 
 

@@ -70,6 +70,8 @@ def told_by_chance(trial: Trial) -> str:
     freedom. More than cells are off by is no cell's, and with few runs nobody can tell.
     """
     search, least = trial.search, trial.holdout.least_noise
+    if WEIGHT not in search.cross.problem.base.names:
+        return ""
     names = [run.name for side in (trial.train, trial.holdout) for run in side.runs]
     cross = search.expansion.cross(names, search.explanation.slots)
     problem = cross.problem
@@ -94,8 +96,6 @@ def _adds_levels(cross: CrossFit, full: Explanation, slot: Slot, least: float) -
     """Whether a name adds to each run a share of its load that load cells may be off by, and beside these less than no
     balance closes, `least`, in the gap's unit."""
     problem, blocks = cross.problem, cross.problem.blocks
-    if WEIGHT not in problem.base.names:
-        return False
     at = problem.base.names.index(WEIGHT)
     weight = blocks.x[:, at] / problem.base.scale[at]
     if not all((weight[blocks.run == run] != 0.0).any() for run in np.unique(blocks.run)):

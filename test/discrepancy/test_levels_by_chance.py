@@ -15,6 +15,7 @@ WAY = np.tile([1.0, -1.0], RUNS * EACH // 2)
 LOAD = np.repeat(np.linspace(80.0, 500.0, RUNS)[np.random.default_rng(1).permutation(RUNS)], EACH)  # N m
 LAYER = np.repeat(np.tile([0.0, 1.0], RUNS // 2), EACH)
 CELLS = np.repeat(np.random.default_rng(5).normal(0.0, 1.5e-3, RUNS), EACH)  # of the load, by run
+DRAWN = np.repeat(np.random.default_rng(6).normal(0.0, 1.0, (4, RUNS)), EACH, axis=1)  # by run, as any signal may be
 NOISE = np.random.default_rng(2).normal(0.0, 0.1, len(RUN))
 LEAST = 0.1  # N m
 
@@ -23,10 +24,12 @@ def slot_of(law="", opposing=False, column=1):
     return Slot("layer_radius", "", (column,), origin=(SimpleNamespace(opposing=opposing), None), law=law)
 
 
-def trial_of(gap, slot, others=34, column=None, runs=RUNS):
-    """A trial that stands by one name: its column beside the weight's, over so many runs."""
+def trial_of(gap, slot, others=34, column=None, runs=RUNS, beside=()):
+    """A trial that stands by one name, or two: its column beside the weight's, over so many runs."""
     own = runs > RUN
-    x = np.column_stack([1e-3 * LOAD, LAYER * LOAD if column is None else column])[own]
+    x = np.column_stack([1e-3 * LOAD, LAYER * LOAD if column is None else column, *(each * LOAD for each in DRAWN)])[
+        own
+    ]
     gap = gap[own]
 
     def explain(slots):
@@ -44,12 +47,12 @@ def trial_of(gap, slot, others=34, column=None, runs=RUNS):
     )
     expansion = SimpleNamespace(cross=lambda names, known: cross, layout=SimpleNamespace(slot_like=lambda each: each))
     side = SimpleNamespace(least_noise=LEAST, runs=[SimpleNamespace(name=f"run {k}") for k in range(RUNS)])
-    search = SimpleNamespace(cross=cross, expansion=expansion, explanation=SimpleNamespace(slots=(slot,)))
+    search = SimpleNamespace(cross=cross, expansion=expansion, explanation=SimpleNamespace(slots=(slot, *beside)))
     return SimpleNamespace(search=search, train=side, holdout=side)
 
 
 def test_a_law_that_takes_a_part_of_levels_that_are_drawn_is_no_name():
-    """Of three nulls whose cells were off by 0.15 % three got a name: a radius, a tare and a feedback that bows."""
+    """Of four nulls whose cells were off by 0.15 % three got a name: a radius, a tare and a feedback that bows."""
     why = told_by_chance(trial_of(CELLS * LOAD + NOISE, slot_of()))
     assert why.startswith("layer_radius: adds to each run's load alone and keeps ")
     assert "12 runs" in why
@@ -82,3 +85,11 @@ def test_friction_beside_it_is_no_level_and_few_runs_do_not_tell():
     gap = CELLS * LOAD + NOISE
     assert told_by_chance(trial_of(gap, slot_of(opposing=True))) == ""
     assert told_by_chance(trial_of(gap, slot_of(), runs=5)) == ""
+
+
+def test_every_amount_that_adds_to_the_load_takes_a_run():
+    """A second name of four amounts leaves few of eight runs to say how far off their cells are."""
+    gap = 0.008 * LAYER * LOAD + CELLS * LOAD + NOISE
+    other = Slot("tare_load", "", (2, 3, 4, 5), origin=(SimpleNamespace(opposing=False), None))
+    assert told_by_chance(trial_of(gap, slot_of(), others=4, runs=8)) == ""
+    assert told_by_chance(trial_of(gap, slot_of(), others=4, runs=8, beside=(other,))).startswith("layer_radius")

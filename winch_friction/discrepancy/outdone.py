@@ -67,7 +67,8 @@ def told_by_chance(trial: Trial) -> str:
     A load cell that is off by another amount in each run makes the run what is independent, however many segments
     show it: by an F test over the runs, for as many laws as may add to a load, the name has to take surely more of
     the runs' levels than it would of levels drawn anew. The one tolerance that the base grants takes a degree of
-    freedom. More than cells are off by is no cell's, and with few runs nobody can tell.
+    freedom, as every amount of such a name does. More than cells are off by is no cell's, and with few runs nobody
+    can tell.
     """
     search, least = trial.search, trial.holdout.least_noise
     if WEIGHT not in search.cross.problem.base.names:
@@ -78,11 +79,12 @@ def told_by_chance(trial: Trial) -> str:
     slots = [search.expansion.layout.slot_like(each) for each in search.explanation.slots]
     laws = len({(each.name, each.law) for each in problem.slots if not each.origin[0].opposing})
     full = cross.explain(slots)
-    for slot in (each for each in slots if not each.origin[0].opposing):
+    adding = [each for each in slots if not each.origin[0].opposing and _adds_levels(cross, full, each, least)]
+    for slot in adding:
         rest = cross.explain([each for each in slots if each is not slot])
         without, left = (levels_of_runs(cross.remainder(each), problem.blocks) for each in (rest, full))
-        degrees, free = len(slot.columns), len(left) - len(slot.columns) - 1
-        if len(left) < LIMITS.fewest_levels or free < 1 or not _adds_levels(cross, full, slot, least):
+        degrees, free = len(slot.columns), len(left) - sum(len(each.columns) for each in adding) - 1
+        if len(left) < LIMITS.fewest_levels or free < 1:
             continue
         before, after = (float(np.sum(np.square([*each.values()]))) for each in (without, left))
         chance = fdtrc(degrees, free, max(before - after, 0.0) / degrees / max(after / free, 1e-12))

@@ -587,11 +587,50 @@ def test_a_name_that_reads_another_signal_is_no_inexactness_of_the_others(
     """`fewer` and `more`: what is left without the name and with it, in floors; `refuses`: the training verdict."""
     slots = [Slot(each.name, "", (0,), origin=(each, None)) for name in (own, other)
              for each in all_candidates() if each.name == name and not each.law_name]  # fmt: skip
-    rest = SimpleNamespace(selection=SimpleNamespace(final=SimpleNamespace(slots=slots[1:])))
+    names = tuple(slot.name for slot in slots[1:])
+    rest = SimpleNamespace(selection=SimpleNamespace(final=SimpleNamespace(slots=slots[1:], names=names)))
     sides = [SimpleNamespace(size_after=Size(left, (left, left)), floor=1.0) for left in (fewer, more)]
     trials = [SimpleNamespace(search=rest, holdout=side) for side in sides]
     monkeypatch.setattr(several_module, "refused", lambda search, rng: refuses)
     assert _by_another_signal(slots[0], *trials, np.random.default_rng(0)) is stays
+
+
+@pytest.mark.parametrize(
+    ("own", "other", "per_layer", "runs", "stays"),
+    [
+        ("layer_radius", "tare_load", -300.0, 8, False),
+        ("tare_load", "layer_radius", -300.0, 8, False),
+        ("layer_radius", "tare_load", 0.0, 8, True),  # another length on each layer: the runs tell them apart
+        ("layer_radius", "tare_load", -300.0, 5, True),  # too few to say how the drum is wound
+        ("layer_radius", "pressure_offset", -300.0, 8, True),
+        ("stribeck", "tare_load", -300.0, 8, True),
+    ],
+)
+def test_on_a_drum_that_is_paid_out_a_layers_radius_is_what_a_wires_weight_is_inexact_by(
+    own, other, per_layer, runs, stays
+):
+    """Of a heavy wire of 2500 m, whose weight grew less and less, a hundredth was a second name: a rope that yields."""
+    slots = [Slot(each.name, "", (0,), origin=(each, None)) for name in (own, other)
+             for each in all_candidates() if each.name == name and not each.law_name]  # fmt: skip
+    spread = np.random.default_rng(4).normal(0.0, 60.0, 8)
+    prepared = [
+        SimpleNamespace(
+            channels={"wire_out": np.full(9, 2600.0 + per_layer * k + spread[k]), "wire_layer": np.full(9, k)}
+        )
+        for k in range(runs)
+    ]
+    rest, every = (
+        SimpleNamespace(
+            selection=SimpleNamespace(final=SimpleNamespace(slots=own_slots, names=tuple(s.name for s in own_slots))),
+            given=SimpleNamespace(prepared=prepared),
+        )
+        for own_slots in (slots[1:], slots)
+    )
+    fewer, more = (
+        SimpleNamespace(search=search, holdout=SimpleNamespace(size_after=Size(left, (left, left)), floor=1.0))
+        for search, left in ((rest, 2.7), (every, 1.0))
+    )
+    assert _by_another_signal(slots[0], fewer, more, np.random.default_rng(0)) is stays
 
 
 @pytest.mark.parametrize("signal", ["direction", "count", "gear_ratio", "max_displacement", "density", "pressure"])

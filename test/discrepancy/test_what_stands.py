@@ -20,7 +20,7 @@ from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.physics.friction.term import Parameter
 
 RNG = np.random.default_rng(0)
-ORIGIN = (SimpleNamespace(linear=()), None)
+ORIGIN = (SimpleNamespace(opposing=True, linear=()), None)
 SLOTS = tuple(Slot(name, "", (k,), origin=ORIGIN) for k, name in enumerate(("one", "two", "three", "four")))
 
 
@@ -107,7 +107,7 @@ def test_a_port_that_grows_much_faster_with_the_displacement_than_its_flow_is_no
     of = {"power": ("n_pp", "m_pp"), "one_way": ("n_po", "m_po")}[law]
     values = {name: ParameterEstimate(value, 0.1, "1") for name, value in zip(of, (n, m), strict=True)}
     rules = ("unproven", "leaves_too_much", "leaves_most", "fits_only_its_own", "within_a_sample", "within_a_step")
-    for name in (*rules, "within_load_cells", "_may_be_none"):
+    for name in (*rules, "within_load_cells", "told_by_chance", "_may_be_none"):
         monkeypatch.setattr(module, name, lambda *_: "")
     search = searched(replace(SLOTS[0], name="port_turbulence"))
     full = Trial(search, SimpleNamespace(parameters={"port_turbulence": values}), side(), side())
@@ -138,7 +138,7 @@ def test_a_law_that_chooses_its_runs_and_leaves_much_does_not_stand(monkeypatch)
 
 def test_a_name_whose_amount_may_be_none_does_not_stand(monkeypatch):
     rules = ("unproven", "leaves_too_much", "leaves_most", "fits_only_its_own", "within_a_sample", "within_a_step")
-    for name in (*rules, "within_load_cells"):
+    for name in (*rules, "within_load_cells", "told_by_chance"):
         monkeypatch.setattr(module, name, lambda *_: "")
     asked = []
     monkeypatch.setattr(module, "_may_be_none", lambda *given: asked.append(given) or "it may be none")
@@ -146,6 +146,20 @@ def test_a_name_whose_amount_may_be_none_does_not_stand(monkeypatch):
     full, refit = Trial(search, SimpleNamespace(parameters={}), side(), side()), SimpleNamespace(holdout=side(3.0))
     assert module._stands(search, refit, lambda _: full, RNG) == (None, "it may be none")
     assert asked == [((SLOTS[0],), full, refit)]
+
+
+@pytest.mark.parametrize("opposing", [False, True])
+def test_a_name_that_load_cells_have_by_chance_does_not_stand_if_it_acts_one_way(monkeypatch, opposing):
+    rules = ("unproven", "leaves_too_much", "leaves_most", "fits_only_its_own", "within_a_sample", "within_a_step")
+    for name in (*rules, "within_load_cells", "_may_be_none", "_chosen_not_whole"):
+        monkeypatch.setattr(module, name, lambda *_: "")
+    asked = []
+    monkeypatch.setattr(module, "told_by_chance", lambda trial: asked.append(trial) or "by chance")
+    origin = (SimpleNamespace(opposing=opposing, name=SLOTS[0].name, linear=()), None)
+    search = searched(replace(SLOTS[0], origin=origin))
+    full, refit = Trial(search, SimpleNamespace(parameters={}), side(), side()), SimpleNamespace(holdout=side(3.0))
+    stands = module._stands(search, refit, lambda _: full, RNG)
+    assert (stands, asked) == (((full, ""), []) if opposing else ((None, "by chance"), [full]))
 
 
 def test_what_does_not_stand_in_the_end_is_said():
@@ -227,6 +241,7 @@ def test_a_delay_within_half_a_sample_of_the_slowest_log_does_not_stand(monkeypa
     monkeypatch.setattr(module, "unproven", lambda *_: "")
     monkeypatch.setattr(module, "leaves_too_much", lambda _: "")
     monkeypatch.setattr(module, "within_load_cells", lambda *_: "")
+    monkeypatch.setattr(module, "told_by_chance", lambda _: "")
     search, own = searched(Slot("signal_delay", "", (0,), origin=ORIGIN)), side()
     own.runs = (SimpleNamespace(dt=0.01), SimpleNamespace(dt=0.02))
     found = SimpleNamespace(parameters={"signal_delay": {"tau": SimpleNamespace(value=late)}})
@@ -241,6 +256,7 @@ def test_a_curve_that_leaves_much_of_the_training_runs_does_not_stand_by_the_loc
     monkeypatch.setattr(module, "unproven", lambda *_: "")
     monkeypatch.setattr(module, "leaves_too_much", lambda _: "")
     monkeypatch.setattr(module, "within_load_cells", lambda *_: "")
+    monkeypatch.setattr(module, "told_by_chance", lambda _: "")
     search = searched(replace(SLOTS[0], free=free), verdict=Verdict(UNEXPLAINED, "it leaves much", leaves=True))
 
     def trial_of(own):

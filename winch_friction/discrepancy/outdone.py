@@ -5,13 +5,17 @@ from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 
 import numpy as np
+from scipy.special import fdtrc
 
 from winch_friction.discrepancy.candidates.candidate import Estimates
 from winch_friction.discrepancy.candidates.families import shapes_over
 from winch_friction.discrepancy.candidates.friction import port
+from winch_friction.discrepancy.candidates.signals import WEIGHT
 from winch_friction.discrepancy.engine.blocks import Slot
+from winch_friction.discrepancy.engine.chance import levels_of_runs
 from winch_friction.discrepancy.engine.crossfit import CrossFit, Explanation, on_their_own
 from winch_friction.discrepancy.engine.grammar import Factor, Scored
+from winch_friction.discrepancy.engine.problem import shares_by_run
 from winch_friction.discrepancy.engine.selection import Selection
 from winch_friction.discrepancy.proof import Trial, at_the_floor
 from winch_friction.discrepancy.proposals import near_laws
@@ -55,6 +59,53 @@ def no_port(parameters: Mapping[str, Estimates]) -> str:
         return ""
     n, m = (next(v for name, v in found.items() if name.startswith(of)) for of in ("n_", "m_"))
     return f"{PORT}: a loss with speed^{n:.3g} and displacement^{m:.3g} is no port's, but of one group's flow"
+
+
+def told_by_chance(trial: Trial) -> str:
+    """Why a name does not stand that adds to each run a share of its load and nothing besides; empty where none does.
+
+    A load cell that is off by another amount in each run makes the run what is independent, however many segments
+    show it: by an F test over the runs, for as many laws as may add to a load, the name has to take surely more of
+    the runs' levels than it would of levels drawn anew. The one tolerance that the base grants takes a degree of
+    freedom, as every amount of such a name does. More than cells are off by is no cell's, and with few runs nobody
+    can tell.
+    """
+    search, least = trial.search, trial.holdout.least_noise
+    if WEIGHT not in search.cross.problem.base.names:
+        return ""
+    names = [run.name for side in (trial.train, trial.holdout) for run in side.runs]
+    cross = search.expansion.cross(names, search.explanation.slots)
+    problem = cross.problem
+    slots = [search.expansion.layout.slot_like(each) for each in search.explanation.slots]
+    laws = len({(each.name, each.law) for each in problem.slots if not each.origin[0].opposing})
+    full = cross.explain(slots)
+    adding = [each for each in slots if not each.origin[0].opposing and _adds_levels(cross, full, each, least)]
+    for slot in adding:
+        rest = cross.explain([each for each in slots if each is not slot])
+        without, left = (levels_of_runs(cross.remainder(each), problem.blocks) for each in (rest, full))
+        degrees, free = len(slot.columns), len(left) - sum(len(each.columns) for each in adding) - 1
+        if len(left) < LIMITS.fewest_levels or free < 1:
+            continue
+        before, after = (float(np.sum(np.square([*each.values()]))) for each in (without, left))
+        chance = fdtrc(degrees, free, max(before - after, 0.0) / degrees / max(after / free, 1e-12))
+        if laws * chance > LIMITS.level_p:
+            kept = f"{100 * after / before:.0f} % of what the levels of {len(left)} runs are without it"
+            return f"{slot.name}: adds to each run's load alone and keeps {kept}, which load cells off by chance do"
+    return ""
+
+
+def _adds_levels(cross: CrossFit, full: Explanation, slot: Slot, least: float) -> bool:
+    """Whether a name adds to each run a share of its load that load cells may be off by, and beside these less than no
+    balance closes, `least`, in the gap's unit."""
+    problem, blocks = cross.problem, cross.problem.blocks
+    at = problem.base.names.index(WEIGHT)
+    weight = blocks.x[:, at] / problem.base.scale[at]
+    if not all((weight[blocks.run == run] != 0.0).any() for run in np.unique(blocks.run)):
+        return False
+    amounts = dict(zip(problem.columns(full.slots), full.beta, strict=True))
+    torque = sum(blocks.x[:, c] * amounts[c] for c in problem.columns([slot])[len(problem.base.names) :])
+    shares, rest = shares_by_run(np.asarray(torque), weight, blocks.run)
+    return bool(np.std(shares) <= LIMITS.most_level and np.sqrt(np.mean(rest**2)) <= least)
 
 
 def outdone(laws: Sequence[Scored], cross: CrossFit, selection: Selection, closed: bool = False) -> str:

@@ -19,6 +19,7 @@ from winch_friction.discrepancy.thresholds import LIMITS
 
 CONSTANT = {"direction", "count", "gear_ratio", "max_displacement", "density"}  # what every law may read
 WHILE_SPEED_CHANGES = (DELAY, "inertia_error")
+ON_THE_DRUM = {"tare_load", "layer_radius"}  # add to the load, by the wire that is out and by the layer in use
 
 
 def several_leave_more_than_noise(trial: Trial) -> str:
@@ -106,6 +107,8 @@ def _with_those_as_good_alone(
 def _by_another_signal(slot: Slot, without: Trial, full: Trial, rng: np.random.Generator) -> bool:
     """Whether a name brings the locked gap down to its floor, where the others leave more of it or more of the training
     runs than the verdict allows, by a signal that they do not read: then it is no inexactness of theirs."""
+    if slot.name in ON_THE_DRUM and ON_THE_DRUM & set(without.search.selection.final.names) and _wound(full.search):
+        return False
     read = {signal for own in without.search.selection.final.slots for signal in _reads(own)}
     if _reads(slot) <= read | CONSTANT:
         return False
@@ -113,6 +116,19 @@ def _by_another_signal(slot: Slot, without: Trial, full: Trial, rng: np.random.G
     if more > LIMITS.several_leave:
         return False
     return fewer > LIMITS.several_leave or refused(without.search, rng)
+
+
+def _wound(search: Search) -> bool:
+    """Whether the wire that is out tells the layer in use, as on a drum that is paid out: then an error of the load by
+    its length and one of the radius by layer are each what the other's law is inexact by."""
+    names = ("wire_out", "wire_layer")
+    runs = [run for run in search.given.prepared if all(name in run.channels for name in names)]
+    if len(runs) < LIMITS.fewest_levels:
+        return False
+    out, layer = (np.array([np.median(run.channels[name]) for run in runs]) for name in names)
+    if min(np.ptp(out), np.ptp(layer)) <= 0.0:
+        return False
+    return bool(1.0 - np.corrcoef(out, layer)[0, 1] ** 2 <= LIMITS.told_by_signal)
 
 
 def _reads(slot: Slot) -> set[str]:

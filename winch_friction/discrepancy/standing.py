@@ -16,7 +16,7 @@ from winch_friction.discrepancy.engine.crossfit import left_of_first_halves, on_
 from winch_friction.discrepancy.engine.selection import select, with_fewer
 from winch_friction.discrepancy.estimates import takes_little, within_a_sample, within_a_step
 from winch_friction.discrepancy.expansion import Given, Split, meet
-from winch_friction.discrepancy.outdone import no_port, one_law
+from winch_friction.discrepancy.outdone import no_port, one_law, told_by_chance
 from winch_friction.discrepancy.proof import (
     Trial,
     at_the_floor,
@@ -152,6 +152,7 @@ def _stands(search: Search, refit: Trial, trial_of: _TrialOf, rng: np.random.Gen
         or _chosen_not_whole(slots, full.holdout)
         or within_a_step(cross, fitted := [search.explanation, *(cross.explain((each,)) for each in rivals)], least)
         or within_load_cells(cross, fitted, least)
+        or ("" if all(slot.origin[0].opposing for slot in slots) else told_by_chance(full))
     )
     return (None, why) if why else (full, "")
 

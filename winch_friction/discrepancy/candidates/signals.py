@@ -27,6 +27,7 @@ from winch_friction.discrepancy.candidates.candidate import (
 )
 from winch_friction.discrepancy.engine import FloatArray
 from winch_friction.discrepancy.engine.crossfit import CrossFit, Explanation
+from winch_friction.discrepancy.engine.problem import shares_by_run
 from winch_friction.discrepancy.preparation.prepare import PreparedRun
 from winch_friction.discrepancy.preparation.seen import GroupSignals
 from winch_friction.discrepancy.thresholds import LIMITS
@@ -284,14 +285,11 @@ def within_load_cells(cross: CrossFit, fitted: Sequence[Explanation], least: flo
     at, count = problem.base.names.index(WEIGHT), len(problem.base.names)
     repeats = LIMITS.at_the_floor * LIMITS.least_share_of_load
     weight = blocks.x[:, at] / problem.base.scale[at]
-    weighed = [blocks.run == run for run in np.unique(blocks.run)]
-    if not all((weight[own] != 0.0).any() for own in weighed):
+    if not all((weight[blocks.run == run] != 0.0).any() for run in np.unique(blocks.run)):
         return ""
     for each in (one for one in fitted if one.slots):
         torque = blocks.x[:, list(problem.columns(each.slots)[count:])] @ each.beta[count:]
-        shares = np.array([weight[own] @ torque[own] / (weight[own] @ weight[own]) for own in weighed])
-        for own, share in zip(weighed, shares, strict=True):
-            torque[own] -= share * weight[own]
+        shares, torque = shares_by_run(torque, weight, blocks.run)
         scatter = float(np.std(shares))
         level = abs(float(np.mean(shares)) + float(each.beta[at]) * problem.base.scale[at])
         most = float(problem.base.upper[at] * problem.base.scale[at])

@@ -281,3 +281,10 @@ def _reweighted(problem: Problem, noise: dict[int, float]) -> Problem:
     np.multiply(g.upper, factor[:, None], out=g.upper)
     again = replace(g, b=g.b * factor[:, None], y2=g.y2 * factor)
     return replace(problem, blocks=blocks, grams=again, noise=noise)
+
+
+def shares_by_run(values: FloatArray, whole: FloatArray, run: np.ndarray) -> tuple[FloatArray, FloatArray]:
+    """The share of a whole that values are in each run, and what they are beside it; all by block."""
+    _, at = np.unique(run, return_inverse=True)
+    shares = np.bincount(at, whole * values) / np.bincount(at, whole**2)
+    return shares, values - shares[at] * whole

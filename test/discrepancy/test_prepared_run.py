@@ -328,3 +328,9 @@ def test_of_a_motion_that_is_hardly_ever_followed_nothing_is(share, some):
     moving = np.arange(SIZE) >= SIZE // 2
     own = np.arange(SIZE) >= SIZE // 2 * (1.0 + share)
     assert follows(90.0, moving=moving, where=own)[moving].any() is np.bool_(some)
+
+
+def test_what_is_one_number_for_a_whole_run_has_no_samples():
+    series, one, plain = module.samples_of_each((np.arange(5.0), np.array(2.0), 3.0), np.array([1, 4]))
+    assert series.tolist() == [1.0, 4.0]
+    assert (float(one), plain) == (2.0, 3.0)

@@ -86,6 +86,17 @@ def test_of_a_few_stretches_a_leak_explains_each(lost, holds):
     assert Leakage({"slip_leakage": (1.0, 0.1)}, 0.0, 0.0, 0.0, 1.0, 0.0).explains(rows) is holds
 
 
+def test_a_leak_explains_runs_beside_the_error_of_the_speeds_scale_that_goes_with_it():
+    """Of a reading that is 2 % off: without the leak 5 % would fit best, and leave half a rad/s of each."""
+    speed = np.array([20.0, 40.0, 60.0, 80.0])
+    lost = 0.02 * speed + 1.0
+    others = [0.0] * (len(LEAKAGE_LAWS) - 1)
+    rows = np.array([[0.0, own, at, 0.0, 1.0, *others] for own, at in zip(lost, speed, strict=True)])
+    found = {"slip_leakage": (1.0, 0.1)}
+    assert Leakage(found, 0.0, 0.0, 0.0, 1.0, 0.0, beside=(0.02,), alone=(0.03,)).explains(rows)
+    assert not Leakage(found, 0.0, 0.0, 0.0, 1.0, 0.0, beside=(-0.02,), alone=(0.03,)).explains(rows)
+
+
 def test_a_plateau_has_lasted_before_its_samples_count_and_what_does_not_move_does_not():
     """The speed follows a step by and by, and stands for a while: neither is lost to a leak."""
     time = np.arange(0.0, 20.0, 0.02)

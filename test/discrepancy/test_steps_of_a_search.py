@@ -21,7 +21,7 @@ RNG = np.random.default_rng(0)
 # -- just after reversals
 def reversing(
     monkeypatch, gone=1.0, p=0.004, gain=1.5, own=0.0, least=None, bound=False, travel=1.0, blocks=200,
-    named=(),
+    named=(), tried=2,
 ):  # fmt: skip
     """What is found where a base leaves 10, the noise 4, and the best of two effects takes `gone` of the six between:
     what was asked, and the finding."""
@@ -64,7 +64,7 @@ def reversing(
     monkeypatch.setattr(search, "expand_around", expand)
     monkeypatch.setattr(search, "build_problem", build)
     monkeypatch.setattr(search, "CrossFit", lambda _: cross)
-    monkeypatch.setattr(search, "candidate_trials", lambda *_: trials)
+    monkeypatch.setattr(search, "candidate_trials", lambda *_: trials[:tried])
     monkeypatch.setattr(search, "flip_p_values", flip)
     monkeypatch.setattr(search, "blurred_travel", lambda _: 0.0)
     every = [
@@ -93,6 +93,7 @@ def test_what_takes_most_just_after_reversals_is_the_finding_of_the_training_run
 @pytest.mark.parametrize(
     ("changed", "is_one"),
     [
+        ({"tried": 0}, False),
         ({"p": 0.006}, False),
         ({"gain": 0.99}, False),
         ({"gain": 0.3, "least": 0.25}, True),

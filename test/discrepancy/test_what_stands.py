@@ -271,6 +271,16 @@ def test_fewer_names_are_tried_unless_one_is_what_every_machine_has(monkeypatch,
     assert len(list(module._sets(searched(SLOTS[0], replace(SLOTS[1], plain=plain)), RNG))) == sets
 
 
+@pytest.mark.parametrize(("other", "apart"), [("one", [True]), ("two", [])])
+def test_of_one_cause_by_two_laws_it_is_asked_whether_it_is_two(monkeypatch, other, apart):
+    asked = []
+    monkeypatch.setattr(module, "_with_at_most", lambda count, own, _: own)
+    monkeypatch.setattr(module, "decided", lambda own, *_: own)
+    monkeypatch.setattr(module, "select", lambda cross, rng, apart=False: asked.append(apart))
+    list(module._sets(searched(SLOTS[0], replace(SLOTS[1], name=other, law="bent")), RNG))
+    assert asked == apart
+
+
 def test_of_two_names_each_gives_way_to_its_rivals_where_the_locked_runs_refuse_them(monkeypatch):
     """Last of all, and in its own place: beside a coarse law of the first, a wrong second one may do better."""
     monkeypatch.setattr(module, "_with_at_most", lambda count, own, _: replace(own, selection=explained_by(own, count)))

@@ -90,6 +90,17 @@ def test_a_wire_heavier_than_what_hangs_is_not_weighed_by_the_cell(wire, swings)
     assert swinging_mass(100e3, wire * 100e3) == pytest.approx(swings * 100e3)
 
 
+@pytest.mark.parametrize(("share", "heavy"), [(0.08, False), (0.12, True)])
+def test_a_wire_is_heavy_whose_part_that_hangs_still_is_a_tenth_of_what_swings(share, heavy):
+    """Of two thirds of it: 400 m of a wire of 3 kg/m with 8 t."""
+    crane, asked = SimpleNamespace(wire_mass=3.0, wire_stiffness=1e8), []
+    length = np.array([share * 8e3 / (STILL * 3.0)])
+    run = SimpleNamespace(swinging=8e3, channels={"wire_out": length}, swing_left=(0.8,), swing_noise=False,
+                          swing_variance=1.0, wire_mode=Mode(1.0, 0.0))  # fmt: skip
+    swinging_along([run], crane, lambda k, wire: asked.append(wire) or run)
+    assert asked == [pytest.approx(share * 8e3 / STILL)] * heavy
+
+
 @pytest.mark.parametrize(("telling", "along"), [(6, True), (2, True), (0, False)])
 def test_the_runs_that_swing_most_say_whether_a_heavy_wire_swings_along(telling, along):
     """Each costs a preparation: of eight six are asked, and the others follow only where these say so.

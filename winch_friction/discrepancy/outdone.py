@@ -105,7 +105,8 @@ def _adds_levels(cross: CrossFit, full: Explanation, slot: Slot, least: float) -
     amounts = dict(zip(problem.columns(full.slots), full.beta, strict=True))
     torque = sum(blocks.x[:, c] * amounts[c] for c in problem.columns([slot])[len(problem.base.names) :])
     shares, rest = shares_by_run(np.asarray(torque), weight, blocks.run)
-    return bool(np.std(shares) <= LIMITS.most_level and np.sqrt(np.mean(rest**2)) <= least)
+    of_cells = np.sqrt(np.mean(shares**2)) <= LIMITS.most_level  # a gain that is the same in all runs is no chance
+    return bool(of_cells and np.sqrt(np.mean(rest**2)) <= least)
 
 
 def outdone(laws: Sequence[Scored], cross: CrossFit, selection: Selection, closed: bool = False) -> str:

@@ -15,7 +15,7 @@ from winch_friction.discrepancy.engine.blocks import Slot
 from winch_friction.discrepancy.engine.chance import levels_of_runs
 from winch_friction.discrepancy.engine.crossfit import CrossFit, Explanation, on_their_own
 from winch_friction.discrepancy.engine.grammar import Factor, Scored
-from winch_friction.discrepancy.engine.problem import shares_by_run
+from winch_friction.discrepancy.engine.problem import of_base, shares_by_run
 from winch_friction.discrepancy.engine.selection import Selection
 from winch_friction.discrepancy.proof import Trial, at_the_floor
 from winch_friction.discrepancy.proposals import near_laws
@@ -98,9 +98,7 @@ def _adds_levels(cross: CrossFit, full: Explanation, slot: Slot, least: float) -
     """Whether a name adds to each run a share of its load that load cells may be off by, and beside these less than no
     balance closes, `least`, in the gap's unit."""
     problem, blocks = cross.problem, cross.problem.blocks
-    at = problem.base.names.index(WEIGHT)
-    weight = blocks.x[:, at] / problem.base.scale[at]
-    if not all((weight[blocks.run == run] != 0.0).any() for run in np.unique(blocks.run)):
+    if (weight := of_base(problem, WEIGHT)) is None:
         return False
     amounts = dict(zip(problem.columns(full.slots), full.beta, strict=True))
     torque = sum(blocks.x[:, c] * amounts[c] for c in problem.columns([slot])[len(problem.base.names) :])

@@ -63,10 +63,11 @@ def corrected_crane(crane: Crane, corrections: Sequence[Correction], model: str 
     radii, inertia = list(crane.drum.layer_radii), crane.inertia
     whose = f"model '{model}': " if model else ""
     for each in corrections:
-        for group in (group for group in each.groups if group not in crane.groups):
-            known = ", ".join(crane.groups) or "none"
-            where = f"{whose}correction '{each.name}'"
-            raise InputError(f"{where}: crane '{crane.name}' has no motor group '{group}'; it has {known}")
+        try:
+            for group in each.groups:
+                crane.motor_count(group)
+        except InputError as unknown:
+            raise InputError(f"{whose}correction '{each.name}': {unknown}") from None
         if each.declared.action is Action.RADIUS:
             for layer in each.layers or range(1, len(radii) + 1):
                 if not 1 <= layer <= len(radii):

@@ -27,7 +27,7 @@ from winch_friction.discrepancy.candidates.candidate import (
 )
 from winch_friction.discrepancy.engine import FloatArray
 from winch_friction.discrepancy.engine.crossfit import CrossFit, Explanation
-from winch_friction.discrepancy.engine.problem import shares_by_run
+from winch_friction.discrepancy.engine.problem import of_base, shares_by_run
 from winch_friction.discrepancy.preparation.prepare import PreparedRun
 from winch_friction.discrepancy.preparation.seen import GroupSignals
 from winch_friction.discrepancy.thresholds import LIMITS
@@ -280,13 +280,10 @@ def within_load_cells(cross: CrossFit, fitted: Sequence[Explanation], least: flo
     whose cells are off by so much some signal of one value in each tells the order.
     """
     problem, blocks = cross.problem, cross.problem.blocks
-    if WEIGHT not in problem.base.names:
+    if (weight := of_base(problem, WEIGHT)) is None:
         return ""
     at, count = problem.base.names.index(WEIGHT), len(problem.base.names)
     repeats = LIMITS.at_the_floor * LIMITS.least_share_of_load
-    weight = blocks.x[:, at] / problem.base.scale[at]
-    if not all((weight[blocks.run == run] != 0.0).any() for run in np.unique(blocks.run)):
-        return ""
     for each in (one for one in fitted if one.slots):
         torque = blocks.x[:, list(problem.columns(each.slots)[count:])] @ each.beta[count:]
         shares, torque = shares_by_run(torque, weight, blocks.run)

@@ -283,6 +283,16 @@ def _reweighted(problem: Problem, noise: dict[int, float]) -> Problem:
     return replace(problem, blocks=blocks, grams=again, noise=noise)
 
 
+def of_base(problem: Problem, name: str) -> FloatArray | None:
+    """What a unit of a base parameter adds to the gap, by block; None of one that the base has not, or that a run shows
+    nothing of."""
+    if name not in problem.base.names:
+        return None
+    at, run = problem.base.names.index(name), problem.blocks.run
+    column = problem.blocks.x[:, at] / problem.base.scale[at]
+    return column if all((column[run == own] != 0.0).any() for own in np.unique(run)) else None
+
+
 def shares_by_run(values: FloatArray, whole: FloatArray, run: np.ndarray) -> tuple[FloatArray, FloatArray]:
     """The share of a whole that values are in each run, and what they are beside it; all by block."""
     _, at = np.unique(run, return_inverse=True)

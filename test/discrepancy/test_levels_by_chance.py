@@ -7,6 +7,7 @@ import pytest
 
 from winch_friction.discrepancy.candidates.signals import WEIGHT
 from winch_friction.discrepancy.engine.blocks import Slot
+from winch_friction.discrepancy.engine.problem import of_base
 from winch_friction.discrepancy.outdone import told_by_chance
 
 RUNS, EACH = 12, 40
@@ -99,3 +100,16 @@ def test_every_amount_that_adds_to_the_load_takes_a_run():
     other = Slot("tare_load", "", (2, 3, 4, 5), origin=(SimpleNamespace(opposing=False), None))
     assert told_by_chance(trial_of(gap, slot_of(), others=4, runs=8)) == ""
     assert told_by_chance(trial_of(gap, slot_of(), others=4, runs=8, beside=(other,))).startswith("layer_radius")
+
+
+def test_of_what_a_run_shows_nothing_no_share_is_told():
+    """An empty hook, or a run that nobody weighed: its share would be nothing over nothing."""
+    base, run = SimpleNamespace(names=("K1", WEIGHT), scale=np.array([1.0, 1e-3])), np.array([0, 0, 1, 1])
+
+    def column_of(*torque, name=WEIGHT):
+        blocks = SimpleNamespace(x=np.column_stack([np.ones(4), torque]), run=run)
+        return of_base(SimpleNamespace(base=base, blocks=blocks), name)
+
+    assert column_of(0.1, 0.2, 0.0, 0.4) == pytest.approx([100.0, 200.0, 0.0, 400.0])
+    assert column_of(0.1, 0.2, 0.0, 0.0) is None
+    assert column_of(0.1, 0.2, 0.0, 0.4, name="rope_force") is None

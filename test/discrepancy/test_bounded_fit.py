@@ -23,3 +23,45 @@ def test_equals_scipy_inside_the_box(seed):
 def test_a_box_that_excludes_zero_is_respected():
     found = bounded_fit(np.eye(2), np.array([5.0, 0.1]), np.array([1.0, 1.0]), np.array([2.0, 3.0]))
     np.testing.assert_allclose(found, [2.0, 1.0])
+
+
+def decays(count: int) -> np.ndarray:
+    """Exponentials of slowly growing rates, whose Gram matrix is singular to rounding."""
+    return np.exp(-np.linspace(0.0, 1.0, count + 30)[:, None] * np.linspace(0.1, 5.0, count))
+
+
+@pytest.mark.parametrize("count", [9, 20, 41])
+@pytest.mark.parametrize("pinned", [False, True])
+def test_columns_that_are_all_but_tied_end_at_the_optimum_too(count, pinned):
+    """Exchanging all at once goes in circles there, by rounding alone."""
+    rng = np.random.default_rng(count)
+    a, y = decays(count), rng.normal(size=count + 30)
+    h = a.T @ a
+    h[np.diag_indices(count)] *= 1.0 + 1e-6
+    lower, upper = np.zeros(count), rng.uniform(0.0, 1.0, count)
+    if pinned:
+        lower[::4] = upper[::4]
+    found = bounded_fit(h, a.T @ y, lower, upper)
+    assert ((found >= lower - 1e-12) & (found <= upper + 1e-12)).all()
+    root, wide = np.linalg.cholesky(h).T, upper > lower
+    left = np.linalg.solve(root.T, a.T @ y) - root[:, ~wide] @ lower[~wide]
+    best = lsq_linear(root[:, wide], left, (lower[wide], upper[wide]), method="bvls", tol=1e-14).cost
+    cost = 0.5 * np.sum((left - root[:, wide] @ found[wide]) ** 2)
+    assert cost == pytest.approx(best, rel=1e-9)
+
+
+@pytest.mark.parametrize("seed", range(10))
+def test_a_guess_changes_nothing_but_the_steps(seed):
+    rng = np.random.default_rng(seed)
+    a, y = rng.normal(size=(40, 12)), rng.normal(size=40)
+    lower, upper = np.zeros(12), np.where(rng.random(12) < 0.5, 0.05, 10.0)
+    guess = np.clip(rng.normal(size=12), lower, upper)
+    found = bounded_fit(a.T @ a, a.T @ y, lower, upper)
+    np.testing.assert_allclose(bounded_fit(a.T @ a, a.T @ y, lower, upper, guess), found, atol=1e-9)
+
+
+def test_a_coefficient_without_room_stays_where_it_is_held():
+    h, g, held = np.array([[2.0, 1.0], [1.0, 2.0]]), np.array([9.0, 1.0]), np.array([0.5, -5.0])
+    for start in (None, held.copy()):
+        found = bounded_fit(h, g, held, np.array([0.5, 5.0]), start)
+        np.testing.assert_allclose(found, [0.5, 0.25])

@@ -20,7 +20,7 @@ from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.physics.friction.term import Parameter
 
 RNG = np.random.default_rng(0)
-ORIGIN = (SimpleNamespace(opposing=True, linear=()), None)
+ORIGIN = (SimpleNamespace(reversal_gain=None, opposing=True, linear=()), None)
 SLOTS = tuple(Slot(name, "", (k,), origin=ORIGIN) for k, name in enumerate(("one", "two", "three", "four")))
 
 
@@ -88,13 +88,39 @@ def test_what_was_found_beside_the_moving_samples_stays_where_the_locked_runs_sh
     assert asked[2][0] == ("locked",)
 
 
+FILE = SimpleNamespace(parameter_names=(), covariance=None)
+
+
+@pytest.mark.parametrize(("tied", "refused"), [(-0.9, False), (0.0, True), (0.9, True)])
+def test_of_two_amounts_that_are_tied_in_the_file_each_may_be_none_but_not_both(tied, refused):
+    """A break-away of two amounts, each some 2 deviations from none and tied by -0.86, was named by sign flips at 7e-10
+    and refused: together they are 7 deviations from none."""
+    parameters = tuple(Parameter(name, "1", 1.0) for name in ("a", "b"))
+    slot = Slot("one", "", (0, 1), origin=(SimpleNamespace(linear=parameters), None))
+    found = {"one": {name: ParameterEstimate(2.2, 1.0, "1") for name in ("a", "b")}}
+    file = SimpleNamespace(parameter_names=("K1", "a", "b"), covariance=np.eye(3))
+    file.covariance[1, 2] = file.covariance[2, 1] = tied
+    full = SimpleNamespace(repaired=SimpleNamespace(parameters=found, model=file))
+    assert bool(module._may_be_none((slot,), full, SimpleNamespace(holdout=side(1.2)))) is refused
+
+
+def test_of_two_amounts_one_that_is_sure_is_enough():
+    """With one degree of freedom more the two together would be less sure than the first is alone."""
+    parameters = tuple(Parameter(name, "1", 1.0) for name in ("a", "b"))
+    slot = Slot("one", "", (0, 1), origin=(SimpleNamespace(linear=parameters), None))
+    found = {"one": {"a": ParameterEstimate(3.1, 1.0, "1"), "b": ParameterEstimate(0.0, 1.0, "1")}}
+    file = SimpleNamespace(parameter_names=("a", "b"), covariance=np.eye(2))
+    full = SimpleNamespace(repaired=SimpleNamespace(parameters=found, model=file))
+    assert not module._may_be_none((slot,), full, SimpleNamespace(holdout=side(1.2)))
+
+
 @pytest.mark.parametrize(("left", "std", "refused"), [(1.2, 0.5, True), (1.2, 0.1, False), (3.0, 0.5, False)])
 def test_an_amount_that_may_be_none_is_no_finding_where_a_refit_leaves_noise(left, std, refused):
     """Of a null 0.20 +- 0.087 bar of a line's loss were named; the refit left 1.3 of the noise without it."""
     amount, other = Parameter("a", "1", 1.0), Parameter("not in the file", "1", 1.0)
     slot = Slot("one", "", (0,), origin=(SimpleNamespace(linear=(amount, other)), None))
     found = {"one": {"a": ParameterEstimate(-1.0, std, "1"), "shape": ParameterEstimate(1.0, 0.0, "1")}}
-    full = SimpleNamespace(repaired=SimpleNamespace(parameters=found))
+    full = SimpleNamespace(repaired=SimpleNamespace(parameters=found, model=FILE))
     why = module._may_be_none((slot,), full, SimpleNamespace(holdout=side(left)))
     assert why.startswith("one: ") if refused else not why
 

@@ -5,7 +5,7 @@ from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 
 import numpy as np
-from scipy.special import fdtrc
+from scipy.special import chdtrc, chdtri, fdtrc
 
 from winch_friction.discrepancy.candidates.candidate import Estimates
 from winch_friction.discrepancy.candidates.families import shapes_over
@@ -15,7 +15,7 @@ from winch_friction.discrepancy.engine.blocks import Slot
 from winch_friction.discrepancy.engine.chance import levels_of_runs
 from winch_friction.discrepancy.engine.crossfit import CrossFit, Explanation, on_their_own
 from winch_friction.discrepancy.engine.grammar import Factor, Scored
-from winch_friction.discrepancy.engine.problem import of_base, shares_by_run
+from winch_friction.discrepancy.engine.problem import NOT_ZERO, of_base, shares_by_run
 from winch_friction.discrepancy.engine.selection import Selection
 from winch_friction.discrepancy.proof import Trial, at_the_floor
 from winch_friction.discrepancy.proposals import near_laws
@@ -23,6 +23,7 @@ from winch_friction.discrepancy.regressors import PORT
 from winch_friction.discrepancy.search import refused
 from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.discrepancy.vocabulary import FALLING, PICKING, RISING, UNLIKE_A_CURVE
+from winch_friction.physics.friction import FrictionModel
 
 # signals of an equation by the proposals' word for them
 _SAME = {"speed_magnitude": "motor_speed", "pressure_sum": "pressure"}
@@ -59,6 +60,20 @@ def no_port(parameters: Mapping[str, Estimates]) -> str:
         return ""
     n, m = (next(v for name, v in found.items() if name.startswith(of)) for of in ("n_", "m_"))
     return f"{PORT}: a loss with speed^{n:.3g} and displacement^{m:.3g} is no port's, but of one group's flow"
+
+
+def surely_some(amounts: Estimates, file: FrictionModel) -> float:
+    """Standard deviations by which the amounts of a cause are some: the surest by itself, or all together.
+
+    Of two that a file ties each may be none, and yet not both. Of corrections a file knows their own deviations alone.
+    """
+    each = max((abs(a.value) / max(a.std, NOT_ZERO) for a in amounts.values()), default=0.0)
+    names, covariance = file.parameter_names, file.covariance
+    if covariance is None or not {*amounts} <= {*names}:
+        return each
+    at, value = [names.index(name) for name in amounts], np.array([a.value for a in amounts.values()])
+    chance = chdtrc(len(at), value @ np.linalg.solve(covariance[np.ix_(at, at)], value))
+    return max(each, float(np.sqrt(chdtri(1, chance))))
 
 
 def told_by_chance(trial: Trial) -> str:

@@ -1,12 +1,14 @@
-"""Which of several names stand: each must take its part of the locked gap, and all of them together leave noise."""
+"""Which of several names stand: each must take its part of the locked gap, and all of them together leave noise; and
+which of a cause's two regimes, where the other does not."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
 
-from winch_friction.discrepancy.answer import AMBIGUOUS, MISSING
+from winch_friction.discrepancy.answer import AMBIGUOUS, MISSING, Verdict
 from winch_friction.discrepancy.candidates.signals import DELAY
+from winch_friction.discrepancy.catalogue import testable
 from winch_friction.discrepancy.engine.blocks import Slot
 from winch_friction.discrepancy.engine.chance import least_part
 from winch_friction.discrepancy.engine.crossfit import on_their_own, reshaped
@@ -14,7 +16,15 @@ from winch_friction.discrepancy.engine.selection import Selection, with_fewer
 from winch_friction.discrepancy.expansion import Expansion, meet
 from winch_friction.discrepancy.proof import Trial, adds, at_the_floor, far_off, is_minor, leaves_too_much, read_back
 from winch_friction.discrepancy.regressors import base_of, layout_of
-from winch_friction.discrepancy.search import ReversalFinding, Search, Study, after_reversals, refused
+from winch_friction.discrepancy.search import (
+    ReversalFinding,
+    Search,
+    Study,
+    after_reversals,
+    every_candidate,
+    nameless,
+    refused,
+)
 from winch_friction.discrepancy.thresholds import LIMITS
 
 CONSTANT = {"direction", "count", "gear_ratio", "max_displacement", "density"}  # what every law may read
@@ -83,6 +93,19 @@ def by_reversals(study: Study, full: Trial, shown: ReversalFinding, trial_of: Ca
     base = seen.cross(study.split.train).explain(())
     shows = after_reversals(given, seen, base, [own], study.split.train, study.rng, lambda each: each)
     return full if shows is not None else alone
+
+
+def at_reversals(study: Study, search: Search) -> Iterator[Search]:
+    """The search with nothing named but what shows just after reversals, where it is one of the causes that were found
+    in the moving samples as well: of these the base takes up most, and what is left of them may be too little for a
+    name though a reversal itself shows it plainly. A cause that is named is not looked for there."""
+    of_reversals = {each.name for each in search.selection.final.slots if each.origin[0].reversal_gain}
+    given, train = search.given, study.split.train
+    known, _ = testable(study.options.candidates or every_candidate(study, given), given.prepared, given.model)
+    bare = search.cross.explain(())
+    shown = after_reversals(given, search.expansion, bare, known, train, study.rng, lambda each: each)
+    if shown and shown.slot.name in of_reversals and shown.holds_on(study.split.holdout, study.rng):
+        yield replace(nameless(search), reversal=shown, verdict=Verdict(MISSING))
 
 
 def _with_those_as_good_alone(

@@ -3,6 +3,7 @@
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
+from itertools import chain
 from typing import Any
 
 import numpy as np
@@ -16,7 +17,7 @@ from winch_friction.discrepancy.engine.crossfit import left_of_first_halves, on_
 from winch_friction.discrepancy.engine.selection import select, with_fewer
 from winch_friction.discrepancy.estimates import takes_little, within_a_sample, within_a_step
 from winch_friction.discrepancy.expansion import Given, Split, meet
-from winch_friction.discrepancy.outdone import no_port, one_law, told_by_chance
+from winch_friction.discrepancy.outdone import no_port, one_law, surely_some, told_by_chance
 from winch_friction.discrepancy.proof import (
     Trial,
     at_the_floor,
@@ -36,7 +37,7 @@ from winch_friction.discrepancy.regressors import PORT
 from winch_friction.discrepancy.repair import Repair, draft, polished
 from winch_friction.discrepancy.run_states import EACH_RUN, SINCE, SOME_RUNS
 from winch_friction.discrepancy.search import Search, Study, decided, nameless, unexplained
-from winch_friction.discrepancy.several import by_reversals, each_proven, several_leave_more_than_noise
+from winch_friction.discrepancy.several import at_reversals, by_reversals, each_proven, several_leave_more_than_noise
 from winch_friction.discrepancy.thresholds import LIMITS
 
 _TrialOf = Callable[[Search], Trial]
@@ -76,7 +77,8 @@ def _borne_out(study: Study, search: Search) -> Trial:
     aside = bool(search.ripple or search.flow)  # of what is in every file no name takes anything off the locked gap
     beside = trial_of(replace(nameless(search), ripple=search.ripple, flow=search.flow)) if aside else refit
     whys = []
-    for each in _sets(search, rng):
+    turns = any(slot.origin[0].reversal_gain for slot in search.selection.final.slots)
+    for each in chain(_sets(search, rng), at_reversals(study, search) if turns else ()):
         full, why = _stands(each, beside, trial_of, rng)
         if full is not None:
             if several := len(full.search.selection.final.slots) > 1:
@@ -164,18 +166,16 @@ def _may_be_none(slots: Sequence[Slot], full: Trial, refit: Trial) -> str:
         return ""
     for slot in on_their_own(slots):
         found = full.repaired.parameters.get(slot.name, {})
-        amounts = [found[p.name] for p in slot.origin[0].linear if p.name in found]
-        if amounts and all(abs(each.value) < SURE * each.std for each in amounts):
+        amounts = {p.name: found[p.name] for p in slot.origin[0].linear if p.name in found}
+        unsure = all(abs(each.value) < SURE * each.std for each in amounts.values())
+        if amounts and unsure and surely_some(amounts, full.repaired.model) < SURE:
             return f"{slot.name}: a refit without it leaves no more than noise, and its size may be none"
     return ""
 
 
 def _chosen_not_whole(slots: Sequence[Slot], locked: Side) -> str:
-    """Why a name is refused that is there in chosen runs alone, where it leaves plainly more than noise: whatever is
-    there in some runs, any law that may choose its runs takes a part of.
-
-    Of such laws that were true, over four draws of drawn cranes, none left more than one and a half of the noise.
-    """
+    """Why a name is refused that is there in chosen runs alone, where it leaves plainly more than noise: any law that
+    may choose its runs takes a part of what is in some, and true ones left at most 1.5 of the noise in four draws."""
     chosen = [slot.name for slot in on_their_own(slots) if slot.law in (SOME_RUNS, SINCE, EACH_RUN)]
     if not chosen or not far_off(locked):
         return ""
@@ -217,9 +217,9 @@ def _replicated(search: Search, split: Split, rng: np.random.Generator) -> Searc
 def not_borne_out(search: Search, stands: Search) -> list[str]:
     """What the training runs show beside the moving samples and does not stand in the end, a sentence each."""
     shown, kept = ((*each.flow, *([each.ripple] if each.ripple else [])) for each in (search, stands))
-    effects = [each.effect for each in shown if each not in kept]
     but = "but by none of its laws does it hold in the locked runs, so it is not named"
-    return [f"{each.name}: the training runs show it ({each.where}), {but}" for each in effects]
+    gone = (each.effect for each in shown if each not in kept)
+    return [f"{each.name}: the training runs show it ({each.where}), {but}" for each in gone]
 
 
 def _judged(trial: Trial, why: str, rng: np.random.Generator) -> Search:

@@ -5,10 +5,10 @@ from functools import partial
 
 import numpy as np
 
+from winch_friction.discrepancy.preparation import wire_mode
 from winch_friction.discrepancy.preparation.prepare import PreparedRun
 from winch_friction.discrepancy.preparation.suspended_load import STILL, Mode, heavy_by_tune, no_filter
 from winch_friction.discrepancy.preparation.wire_mode import DAMPING_RATIOS, FOLLOWED, LEAST_GAIN, MOST_DAMPED, TOLD
-from winch_friction.physics.signals import NAN
 from winch_friction.physics.winch import Crane
 
 # of the damping's logarithm; runs of one wire; the same where as many others do not object
@@ -215,7 +215,7 @@ def _by_one_stiffness(prepared: Sequence[PreparedRun], weights: np.ndarray) -> b
 
 def _least(run: PreparedRun) -> float:
     """The share of what swings that the best damping leaves; 1: tells of none."""
-    return min(*_said(run), 1.0) + SWINGS_LEFT if run.swing_left else 1.0
+    return min(wire_mode.least_left(_said(run)), 1.0) + SWINGS_LEFT if run.swing_left else 1.0
 
 
 def agreed_modes(prepared: Sequence[PreparedRun]) -> list[Mode]:
@@ -256,7 +256,7 @@ def agreed_modes(prepared: Sequence[PreparedRun]) -> list[Mode]:
 
 def _length(run: PreparedRun) -> float:
     """Of the wire, m; nan where nobody logged it."""
-    return float(np.median(run.channels.get("wire_out", [NAN])))
+    return float(np.median(run.channels.get("wire_out", [np.nan])))
 
 
 def _in_tune(run: PreparedRun, stiffness: float) -> float:

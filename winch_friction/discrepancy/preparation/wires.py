@@ -210,7 +210,7 @@ def _by_one_stiffness(prepared: Sequence[PreparedRun], weights: np.ndarray) -> b
     length, modes = [_length(run) for run in prepared], [(*run.wire_mode[:2], run.swinging) for run in prepared]
     sharp = _sharp(modes, [_said(run) for run in prepared], length)
     told = (np.array(modes)[sharp, 0], np.array(length)[sharp], np.array(modes)[sharp, 2], weights[sharp])
-    return heavy_by_tune(*told) if len(sharp) >= FEWEST_ALIKE else None
+    return heavy_by_tune(*told) if len(sharp) >= FEWEST_UNOPPOSED else None
 
 
 def _least(run: PreparedRun) -> float:

@@ -176,6 +176,19 @@ def test_what_a_line_takes_goes_with_the_flow_and_with_how_thick_the_oil_is():
     assert [each.name for each in module.literature() if each.law_name == "line_laminar"] == ["line_pressure_drop"]
 
 
+def test_a_turbulent_line_is_at_one_displacement_what_a_motor_churns():
+    """Both go with the fourth root of the viscosity and a power of the speed: churning alone was named for a hose."""
+    line, churns = term_named("line_turbulent"), term_named("churning_viscous")
+    size = {line.parameters[0].symbol: 4e5, line.parameters[1].symbol: 1.75}
+    own = {churns.parameters[0].symbol: 2.0, churns.parameters[1].symbol: 1.75}
+    ratios = []
+    for oil, speed, stroke in ((5.0, 30.0, 1e-5), (50.0, 30.0, 1e-5), (20.0, 200.0, 1e-5), (20.0, 200.0, 2e-5)):
+        at = {symbols.n: 2.0, symbols.D: stroke, symbols.w: speed, symbols.oil_temperature: oil, symbols.s: 1.0}
+        ratios.append(float(line.equation.subs(size | at)) / float(churns.equation.subs(own | at)))
+    assert ratios[1:] == pytest.approx([ratios[0], ratios[0], 2.0**2.75 * ratios[0]], rel=2e-2)
+    assert [each.name for each in module.literature() if each.law_name == "line_turbulent"] == ["line_pressure_drop"]
+
+
 @pytest.mark.parametrize(("name", "share"), [("gear_load_onset", 1.0), ("sheave_onset", 1.0 / 250.0)])
 def test_from_a_load_on_a_loss_grows_with_what_is_beyond(name, share):
     term = term_named(name)

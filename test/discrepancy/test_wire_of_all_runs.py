@@ -147,8 +147,10 @@ def test_loads_that_ring_by_one_stiffness_say_whether_a_heavy_wire_swings_along(
         for own, was in zip(swinging_along(runs, crane, lambda k, _: ringing(900.0, 25e3)), runs, strict=True)
     ]
     assert changed == [along] * 5
-    few = runs[:3]
-    assert swinging_along(few, crane, lambda k, _: ringing(900.0, 25e3)) == few
+    for count in (2, 3):  # of 100 t three hoists alone rang, 15 bar, beside nine runs in a sea that none resounds to
+        few = runs[1:][:count]
+        after = swinging_along(few, crane, lambda k, _: ringing(900.0, 25e3))
+        assert (after == few) == (not along or count < 3)
 
 
 def test_loads_that_ring_by_one_stiffness_as_they_are_ask_no_heavier_wire():

@@ -8,7 +8,7 @@ import pytest
 import yaml
 from scipy.signal import lsim
 
-from winch_friction.physics.channels import BAR, CM3_PER_REV
+from winch_friction.physics.channels import BAR, CM3_PER_REV, GRAVITY
 from winch_friction.physics.corrections import corrected, corrected_crane, unswung
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.fluid import relative_viscosity, relaxed_compression
@@ -411,6 +411,50 @@ def test_an_error_for_a_time_is_taken_out_then_and_only_then(truth, crane_150t, 
         Correction("inertia", 0.1, during=((0.0, 1.0),))
     with pytest.raises(InputError, match="from before to"):
         Correction("pressure_offset", 0.1, during=((1.0, 0.0),))
+
+
+def told_by(truth, *names):
+    """The run, with what tells the load in its place."""
+    columns = {k: v for k, v in truth.columns.items() if k != "hook_load"}
+    told = {"rope_force": 5.5e5, "load_torque": 2.4e3, "hook_load": 55e3}
+    return Run("told", columns | {name: np.full(len(truth.time), told[name]) for name in names})
+
+
+@pytest.mark.parametrize("name", ["tare_load", "wire_weight"])
+def test_a_mass_is_missing_in_whatever_tells_the_load(name, truth, crane_150t, crane2_model):
+    """A rope's force that crept ended the whole search: "column 'hook_load' is missing"."""
+    model = replace(crane2_model, corrections=(Correction(name, 50.0),))
+    mass = 50.0 * (truth["wire_out"] if name == "wire_weight" else 1.0)
+    at_shaft = GRAVITY * mass * crane_150t.drum.radius(6.0) / crane_150t.gear_ratio
+    for names, added in (
+        (("rope_force",), {"rope_force": GRAVITY * mass}),
+        (("load_torque",), {"load_torque": at_shaft}),
+        (("hook_load", "rope_force"), {"hook_load": mass, "rope_force": 0.0}),
+        (("hook_load", "load_torque"), {"hook_load": mass, "load_torque": at_shaft}),
+    ):
+        run = told_by(truth, *names)
+        right, _ = corrected(run, crane_150t, model)
+        for column, more in added.items():
+            np.testing.assert_allclose(right[column] - run[column], more, rtol=1e-9)
+    run = told_by(truth, "load_torque")
+    outer = Run("outer", {k: v for k, v in run.columns.items() if k != "wire_layer"})
+    np.testing.assert_allclose(corrected(outer, crane_150t, model)[0]["load_torque"] - 2.4e3, at_shaft)
+    with pytest.raises(InputError, match=f"'hook_load' is missing; correction {name} needs it"):
+        corrected(told_by(truth), crane_150t, model)
+
+
+def test_a_running_node_puts_the_mass_into_the_ropes_force_where_no_cell_weighs(truth, crane_150t, crane2_model):
+    model = replace(crane2_model, corrections=(Correction("tare_load", 50.0), Correction("wire_weight", 2.0)))
+    corrector, sample = SampleCorrector(crane_150t, model), next(iter(told_by(truth, "rope_force").samples()))
+    mass = 50.0 + 2.0 * sample.wire_out
+    assert corrector(sample).rope_force - 5.5e5 == pytest.approx(GRAVITY * mass)
+    assert corrector(replace(sample, wire_out=float("nan"))).rope_force - 5.5e5 == pytest.approx(GRAVITY * 50.0)
+    assert corrector.uncorrected == ("wire_weight",)
+    both = corrector(replace(sample, hook_load=55e3))
+    assert (both.hook_load - 55e3, both.rope_force) == (pytest.approx(mass), 5.5e5)
+    silent = corrector(replace(sample, wire_out=float("nan")))  # the cell, which was there before
+    assert silent.rope_force == 5.5e5
+    assert corrector.uncorrected == ()
 
 
 def test_a_file_with_a_window_that_is_none_says_so(crane2_model):

@@ -155,6 +155,7 @@ PER_MOTOR = {
         v["p_l"] * (q.n * q.D * q.w / q.flow) ** v["n_l"] * q.D * way(q, 1.0 + v["b_l"], 1.0 - v["b_l"])
     ),
     "line_laminar": lambda q, v: v["p_lv"] * q.n * q.D * q.w / q.flow * q.D * thick(q.oil),
+    "line_turbulent": lambda q, v: v["p_lt"] * (q.n * q.D * q.w / q.flow) ** v["n_lt"] * q.D * thick(q.oil) ** 0.25,
     "line_each_motor": lambda q, v: (
         v["p_le"] * (q.D / q.X * q.w / q.fast) ** v["n_le"] * q.D * way(q, 1.0 + v["b_le"], 1.0 - v["b_le"])
     ),
@@ -405,7 +406,7 @@ def test_a_memory_starts_from_nothing(name):
 FLUID = {
     "line_pressure_drop", "viscosity_temperature", "viscosity_reference", "viscosity_vogel", "viscosity_exponential",
     "viscosity_hersey", "viscosity_each_way", "line_pressure_power", "line_laminar", "line_each_motor",
-    "line_driving", "line_active", "line_passive",
+    "line_turbulent", "line_driving", "line_active", "line_passive",
 }  # fmt: skip
 
 

@@ -8,6 +8,7 @@ from dataclasses import replace
 from functools import partial
 
 import numpy as np
+from scipy.special import fdtrc
 
 from winch_friction.discrepancy.answer import AMBIGUOUS, MISSING, UNEXPLAINED
 from winch_friction.discrepancy.candidates.families import SURFACES, free_members
@@ -224,10 +225,30 @@ def _of_load_cells(off: FloatArray, runs: Sequence[PreparedRun]) -> bool:
         [run.start for run in runs],
         *([float(np.median(run.channels[n][run.used])) for run in runs] for n in names),
     ]
-    ordered = [chance_of_order(np.array(each), off) for each in told]
+    ordered = [_chance(np.array(each), off) for each in told]
     kinds = sorted({run.kind for run in runs})
-    of_kind = chance_of_order(np.array([float(kinds.index(run.kind)) for run in runs]), off)
+    of_kind = _chance(np.array([float(kinds.index(run.kind)) for run in runs]), off)
     return min(chance_of_zero_mean(off), of_kind, *(len(told) * p for p in ordered)) >= LIMITS.level_p
+
+
+def _chance(signal: FloatArray, off: FloatArray) -> float:
+    """Two-sided p-value that levels have nothing to do with a signal, one value of either by run: neither with its
+    order nor, where it stands at one of a few values as the layer in use does, with which of them. Eight runs on two
+    layers have no order rarer than once in 200, however far apart and narrow the levels of either layer are."""
+    by_order, by_value = chance_of_order(signal, off), _chance_of_values(signal, off)
+    return by_order if by_value is None else min(2.0 * min(by_order, by_value), 1.0)
+
+
+def _chance_of_values(signal: FloatArray, off: FloatArray) -> float | None:
+    """p-value of the F test that levels are alike whichever value a signal has (one-way analysis of variance), over
+    values of two runs and more; None where fewer than two values have these."""
+    groups = [own for own in (off[signal == value] for value in np.unique(signal)) if len(own) > 1]
+    if len(groups) < 2:
+        return None
+    every, within = np.concatenate(groups), sum(float(np.sum((own - own.mean()) ** 2)) for own in groups)
+    degrees, free = len(groups) - 1, len(every) - len(groups)
+    between = float(np.sum((every - every.mean()) ** 2)) - within
+    return float(fdtrc(degrees, free, max(between, 0.0) / degrees / max(within / free, 1e-30)))
 
 
 def without_swing(study: Study, given: Given, trial: Trial) -> Trial:

@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from winch_friction.physics.channels import GRAVITY
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.fluid import (
     air_compressed,
@@ -31,6 +32,7 @@ SIGNAL_ORDER = (
     Action.MASS, Action.HEAT, Action.WARMTH, Action.SLIP, Action.AIR,
 )  # fmt: skip
 S_HEIGHT = 6.0 * math.sqrt(3.0)  # times x (1 - x) (1 - 2 x): its extremes are -1 and 1
+WEIGHED = ("hook_load", "rope_force", "load_torque")  # columns of which one tells what hangs there
 LEAST_STROKE = 0.01  # of the largest displacement; the feedback's own error, 1 %, is all of what is shown below
 NEWTON_STEPS = 6  # an S of a tenth of what would fold it is exact to rounding after three
 
@@ -99,6 +101,8 @@ def _missing(correction: Correction, run: Run) -> list[str]:
     if own.late:  # whatever of these a run has is late by the same
         return []
     whole = [channel for channel in wanted if channel not in GROUP_CHANNELS]
+    if own.action is Action.MASS and any(name in run for name in WEIGHED):
+        whole.remove("hook_load")
     groups = [g for g in run.groups if not correction.groups or g in correction.groups]
     needed = whole + [f"{g}.{channel}" for g in groups for channel in wanted if channel in GROUP_CHANNELS]
     return [f"column '{name}' is missing; correction {correction.name} needs it" for name in needed if name not in run]
@@ -198,8 +202,14 @@ def lateness(course: str, since: FloatArray, time_constant: float | None) -> Flo
 
 
 def _mass(columns: Columns, run: Run, c: Correction, crane: Crane) -> Columns:
-    length = columns["wire_out"] if "wire_out" in c.declared.reads else 1.0
-    return columns | {"hook_load": columns["hook_load"] + c.error(columns["time"], None) * length}
+    """A mass more, in whatever tells the load: itself, the rope's force or the torque that it makes at the shaft."""
+    mass = c.error(columns["time"], None) * (columns["wire_out"] if "wire_out" in c.declared.reads else 1.0)
+    shown: Columns = {"hook_load": mass} if "hook_load" in columns else {"rope_force": GRAVITY * mass}
+    if "load_torque" in columns:
+        layers = columns.get("wire_layer", np.array([np.nan]))
+        radius = np.array([crane.drum.radius(float(k)) for k in layers])
+        shown["load_torque"] = mass * GRAVITY * radius / crane.gear_ratio
+    return columns | {name: columns[name] + more for name, more in shown.items() if name in columns}
 
 
 def _warmth(columns: Columns, run: Run, c: Correction, crane: Crane) -> Columns:

@@ -3,6 +3,7 @@
 import math
 from dataclasses import replace
 
+from winch_friction.physics.channels import GRAVITY
 from winch_friction.physics.corrections import SIGNAL_ORDER, corrected_crane, in_turn, true_value
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.friction.correction import Correction
@@ -40,6 +41,7 @@ class SampleCorrector:
         live = [c for c in in_turn(model.corrections) if c.declared.live]
         self._signals = [c for action in SIGNAL_ORDER for c in live if c.declared.action is action]
         self._lacking: tuple[Correction, ...] = ()
+        self._weighed = False  # a load cell that falls silent leaves the rope's force as it was
         self.idle = not (self._signals or self._over)  # it changes no sample and refuses none
 
     @property
@@ -63,7 +65,9 @@ class SampleCorrector:
             return sample
         groups = {name: replace(member) for name, member in sample.groups.items()}
         out = replace(sample, groups=groups)
-        self._lacking = tuple(c for c in self._signals if c.holds(sample.time) and not _correct(out, c))
+        self._weighed = self._weighed or math.isfinite(sample.hook_load)
+        there = (c for c in self._signals if c.holds(sample.time))
+        self._lacking = tuple(c for c in there if not _correct(out, c, self._weighed))
         return out
 
 
@@ -72,13 +76,18 @@ def past_corrections(corrector: SampleCorrector) -> str:
     return ", ".join(f"{name} until {end:.0f} s" for name, end in corrector.past.items())
 
 
-def _correct(sample: Sample, c: Correction) -> bool:
-    """Correct a sample in place; False where it lacks what that takes."""
+def _correct(sample: Sample, c: Correction, weighed: bool) -> bool:
+    """Correct a sample in place; False where it lacks what that takes. What a mass is missing in is the rope's force
+    where no load was ever `weighed`."""
     if c.declared.action is Action.MASS:
         length = sample.wire_out if "wire_out" in c.declared.reads else 1.0
         if math.isfinite(length):
-            sample.hook_load += float(c.error(sample.time, None)) * length
-        return math.isfinite(length) or sample.hook_load != sample.hook_load
+            mass = float(c.error(sample.time, None)) * length
+            sample.hook_load += mass
+            if not weighed and math.isfinite(sample.rope_force):
+                sample.rope_force += GRAVITY * mass
+        lacks = math.isfinite(sample.hook_load) or (math.isfinite(sample.rope_force) and not weighed)
+        return math.isfinite(length) or not lacks
     error = float(c.error(sample.time, sample.oil_temperature))
     if error != error:
         return False

@@ -80,7 +80,7 @@ def literature() -> list[Candidate]:
         # a spring holds a check valve shut: hardly more pressure is lost at a larger flow, and none the other way
         line("line_pressure_power", {"n_l": (0.25,), "b_l": (-1.0, 1.0)}, law_name="cracking pressure one way",
              continuous=("n_l",)),
-        line("line_laminar", needs=OIL),
+        line("line_laminar", needs=OIL), line("line_turbulent", {"n_lt": (1.3, 1.75, 2.3)}, needs=OIL),
         *(line(f"line_{side}", {f"n_l{side[0]}": FLOWS}) for side in ("driving", "active", "passive")),
         *(_of("case_pressure", term) for term in ("case_high_port", "case_ports")),
         *_by_load("gear_load_loss", "gear_load", "g"),

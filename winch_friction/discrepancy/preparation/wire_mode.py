@@ -179,6 +179,18 @@ def _best_ratio(left: Callable[[float], float]) -> tuple[float, float]:
     return float(values[k]), float(np.exp(-0.5 * curve[1] / curve[0]))
 
 
+def least_left(left: Sequence[float]) -> float:
+    """The least share that a damping between those tried would leave, of what each of these leaves: a load that swings
+    so sharply leaves three times as much a step beside its own. Not below nothing."""
+    k = int(np.argmin(left))
+    if k in (0, len(left) - 1):
+        return left[k]
+    bend, slope, least = np.polyfit(
+        np.log(np.array(DAMPING_RATIOS[k - 1 : k + 2]) / DAMPING_RATIOS[k]), left[k - 1 : k + 2], 2
+    )
+    return max(float(least - slope**2 / (4.0 * bend)), 0.0) if bend > 0.0 else left[k]
+
+
 def _between(left: Callable[[float], float], ratio: float) -> float:
     """The damping ratio that leaves least about a first guess: the parabola's vertex once more, from so near that what
     is left is one, and no farther off than it was asked."""

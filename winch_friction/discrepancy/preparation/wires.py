@@ -5,10 +5,10 @@ from functools import partial
 
 import numpy as np
 
+from winch_friction.discrepancy.preparation import wire_mode
 from winch_friction.discrepancy.preparation.prepare import PreparedRun
 from winch_friction.discrepancy.preparation.suspended_load import STILL, Mode, heavy_by_tune, no_filter
 from winch_friction.discrepancy.preparation.wire_mode import DAMPING_RATIOS, FOLLOWED, LEAST_GAIN, MOST_DAMPED, TOLD
-from winch_friction.physics.signals import NAN
 from winch_friction.physics.winch import Crane
 
 # of the damping's logarithm; runs of one wire; the same where as many others do not object
@@ -210,12 +210,12 @@ def _by_one_stiffness(prepared: Sequence[PreparedRun], weights: np.ndarray) -> b
     length, modes = [_length(run) for run in prepared], [(*run.wire_mode[:2], run.swinging) for run in prepared]
     sharp = _sharp(modes, [_said(run) for run in prepared], length)
     told = (np.array(modes)[sharp, 0], np.array(length)[sharp], np.array(modes)[sharp, 2], weights[sharp])
-    return heavy_by_tune(*told) if len(sharp) >= FEWEST_ALIKE else None
+    return heavy_by_tune(*told) if len(sharp) >= FEWEST_UNOPPOSED else None
 
 
 def _least(run: PreparedRun) -> float:
     """The share of what swings that the best damping leaves; 1: tells of none."""
-    return min(*_said(run), 1.0) + SWINGS_LEFT if run.swing_left else 1.0
+    return min(wire_mode.least_left(_said(run)), 1.0) + SWINGS_LEFT if run.swing_left else 1.0
 
 
 def agreed_modes(prepared: Sequence[PreparedRun]) -> list[Mode]:
@@ -256,7 +256,7 @@ def agreed_modes(prepared: Sequence[PreparedRun]) -> list[Mode]:
 
 def _length(run: PreparedRun) -> float:
     """Of the wire, m; nan where nobody logged it."""
-    return float(np.median(run.channels.get("wire_out", [NAN])))
+    return float(np.median(run.channels.get("wire_out", [np.nan])))
 
 
 def _in_tune(run: PreparedRun, stiffness: float) -> float:

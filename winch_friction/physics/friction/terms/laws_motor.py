@@ -130,6 +130,8 @@ p_l = Parameter(  # of a small winch, whose flow never comes near, it is the law
     "p_l", "Pa", 2e5, upper=1e9, doc="pressure lost between transducer and motor at 0.02 m^3/s"
 )
 p_lv = Parameter("p_lv", "Pa", 2e5, upper=1e9, doc="pressure lost at 0.02 m^3/s of oil at 40 degC")
+p_lt = Parameter("p_lt", "Pa", 2e5, upper=1e9, doc="pressure lost at 0.02 m^3/s of oil at 40 degC")
+n_lt = Parameter("n_lt", "1", 1.75, lower=0.1, upper=3.0, shape=True, doc="exponent of the flow")
 n_l = Parameter("n_l", "1", 1.75, lower=0.1, upper=3.0, shape=True, doc="exponent of the flow")
 b_l = Parameter(
     "b_l", "1", 0.5, lower=-1.0, upper=1.0, shape=True, doc="1: when hoisting alone, -1: when lowering alone"
@@ -215,6 +217,11 @@ line_pressure_power = _motor(
 line_laminar = _motor(
     "line_laminar", p_lv.symbol * D * (n * D * w / FULL_FLOW) * viscosity(oil_temperature) / NU_40, (p_lv,),
     "Hagen-Poiseuille, of an oil that is as thick as it is cold (Walther, ASTM D341)", "fluid",
+)  # fmt: skip
+line_turbulent = _motor(
+    "line_turbulent",
+    _AT_40 * p_lt.symbol * D * (n * D * w / FULL_FLOW + _TINY) ** n_lt.symbol * viscosity(oil_temperature) ** _SMALL,
+    (p_lt, n_lt), "Blasius 1913: in a smooth pipe the loss grows with the fourth root of the viscosity", "fluid",
 )  # fmt: skip
 line_each_motor = _motor(
     "line_each_motor", p_le.symbol * D * (_x * _w + _TINY) ** n_le.symbol * (1 + b_le.symbol * s), (p_le, n_le, b_le),

@@ -12,7 +12,7 @@ import numpy as np
 
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.signals import Run
-from winch_friction.records.atomic import writing
+from winch_friction.records.atomic import put, taken, writing
 from winch_friction.records.bags import METADATA_KEY
 from winch_friction.records.topics import TopicMap
 
@@ -72,7 +72,7 @@ class BagWriter:
 
     def __init__(self, path: Path | str, storage: str = "", metadata: dict[str, Any] | None = None) -> None:
         self.path = Path(path)
-        if self.path.exists():
+        if taken(self.path):
             raise InputError(f"{self.path}: exists already; remove it or choose another name")
         self._storage = _storage(self.path, storage)
         self.metadata = metadata if metadata is not None else {}
@@ -123,7 +123,7 @@ class BagWriter:
         made = self._folder / self.path.stem
         if self.path.suffix in STORAGES:
             made = next(iter(_storage_files(made)))
-        made.rename(self.path)
+        put(made, self.path, new=True)
 
 
 def _storage(path: Path, storage: str) -> str:

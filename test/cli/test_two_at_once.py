@@ -1,6 +1,8 @@
 """Two commands that make the same new file, or folder, at the same time: what the first made stands."""
 
 import os
+import subprocess
+import sys
 
 import numpy as np
 import pytest
@@ -122,3 +124,30 @@ def test_the_verbs_ask_so(tmp_path, monkeypatch):
     import_._refuse_existing([], [tmp_path / "b.csv"], False)
     init._write(tmp_path / "c.yaml", "x", True, True)
     assert seen == [("a.csv", False), ("b.csv", False), ("c.yaml", True)]
+
+
+KILLED = """
+import os, signal, sys
+from winch_friction.records.bag_write import BagWriter
+
+with BagWriter(sys.argv[1]):
+    os.kill(os.getpid(), signal.SIGTERM)
+    signal.pause()
+"""
+
+
+@pytest.mark.parametrize("name", ["a.mcap", "a"])
+def test_what_a_killed_bag_has_left_goes_with_the_next_one(name, tmp_path):
+    """A recorder or replay that was ended by SIGTERM or SIGKILL left a hidden folder, as large as the bag, for good."""
+    path = tmp_path / name
+    subprocess.run([sys.executable, "-c", KILLED, str(path)], check=False)
+    assert len(os.listdir(tmp_path)) == 1
+    with BagWriter(path):
+        assert len(os.listdir(tmp_path)) == 1  # its own
+    assert os.listdir(tmp_path) == [name]
+
+
+def test_what_another_bag_is_made_in_is_left_alone(tmp_path):
+    with BagWriter(tmp_path / "a.mcap"), BagWriter(tmp_path / "b.mcap"):
+        pass
+    assert sorted(os.listdir(tmp_path)) == ["a.mcap", "b.mcap"]

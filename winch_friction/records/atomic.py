@@ -11,6 +11,7 @@ import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from tempfile import mkdtemp
 
 _ONLY_NEW: set[str] = set()  # places at which nothing was, until this process has written there
 MEANWHILE = "was made meanwhile by another command, and is not replaced; give another name"
@@ -156,6 +157,11 @@ def _write_nameless(path: Path, content: bytes) -> bool:
 def _beside(path: Path) -> Path:
     """The temporary file of this process and thread; its name says whose it is."""
     return path.with_name(f".{path.stem}.{os.getpid()}-{threading.get_ident()}.tmp{path.suffix}")
+
+
+def own_folder(path: Path) -> Path:
+    """A new hidden folder beside a place, for what is to be moved there; its name says whose it is."""
+    return Path(mkdtemp(dir=path.parent, prefix=f".{path.stem}.{os.getpid()}-", suffix=f".tmp{path.suffix}"))
 
 
 def remove_stale(path: Path) -> None:

@@ -106,16 +106,18 @@ def test_a_seal_that_was_opened_is_not_lost_to_the_next_trial(tmp_path, capsys):
 DYING = """
 import os, signal, sys
 from winch_friction.cli import main
-replace = os.replace
 
 
-def dying(source, target):
-    replace(source, target)
-    if os.path.dirname(target) == sys.argv[1]:
-        os.kill(os.getpid(), signal.SIGKILL)
+def dying(move):
+    def moved(source, target, **options):
+        move(source, target, **options)
+        if os.path.dirname(target) == sys.argv[1]:
+            os.kill(os.getpid(), signal.SIGKILL)
+
+    return moved
 
 
-os.replace = dying
+os.replace, os.link = dying(os.replace), dying(os.link)
 main.run(sys.argv[2:])
 """
 

@@ -6,7 +6,7 @@ import pytest
 from sea import PERIOD, Fed
 
 from winch_friction.compensation import CompensatorConfig
-from winch_friction.online.compensator import SlowMotion
+from winch_friction.online.doubt import SlowWave, span
 from winch_friction.physics.signals import Sample
 
 WAVE, SLOW = 9.0, 4.0  # s, rad/s at the motor: a few centimetres of wire
@@ -93,8 +93,12 @@ def test_without_a_command_nothing_is_against_it():
 
 
 def _said(samples):
-    own = SlowMotion(5.0)
-    return [sample.time for sample in samples if own.contradiction(sample)]
+    own, last, said = SlowWave(5.0), math.nan, []
+    for sample in samples:
+        if own.contradiction(sample, span(last, sample.time)):
+            said.append(sample.time)
+        last = sample.time
+    return said
 
 
 def _sent(seconds, speed, command):

@@ -19,20 +19,22 @@ PERIOD = 0.02  # s
 
 def sea(
     share=1.0, speed=60.0, period=7.0, seconds=40.0, step=0.001, hold=1, late=0.0, drift=0.0, still=False,
-    zeroed=math.inf,
+    zeroed=math.inf, layer=1.0, lies=None,
 ):  # fmt: skip
     """Samples whose speed is `share` of the true one, rad/s; a wire counted in steps of `step` m, every `hold` samples,
-    `late` s late; `drift` m/s of it are nobody's; counted from 0 on after `zeroed` s."""
+    `late` s late; `drift` m/s of it are nobody's; counted from 0 on after `zeroed` s. The layer is said to be `layer`,
+    and is `lies`."""
+    lever = LEVER if lies is None else CRANE.drum.radius(lies) / CRANE.gear_ratio
     omega, shown = 2.0 * math.pi / period, math.nan
     for k in range(int(seconds / PERIOD)):
         time = k * PERIOD
         if k % hold == 0:
             turned = speed / omega * (1.0 - math.cos(omega * (time - late)))
-            wire = 300.0 - LEVER * turned + drift * time
+            wire = 300.0 - lever * turned + drift * time
             wire -= 300.0 if time > zeroed else 0.0
             shown = 300.0 if still else step * round(wire / step)
         now = share * speed * math.sin(omega * time)
-        yield Sample(time, now, speed_reference=now, wire_out=shown, wire_layer=1.0)
+        yield Sample(time, now, speed_reference=now, wire_out=shown, wire_layer=layer)
 
 
 def said(samples):
@@ -45,15 +47,58 @@ def said(samples):
 
 
 @pytest.mark.parametrize(
-    "way", [{}, {"hold": 25}, {"step": 0.1}, {"late": 0.5}, {"speed": 200.0}, {"period": 15.0}, {"zeroed": 6.2}]
+    "way",
+    [
+        {},
+        {"hold": 25},
+        {"step": 0.1, "speed": 200.0},
+        {"late": 0.5},
+        {"speed": 200.0},
+        {"period": 15.0},
+        {"zeroed": 6.2},
+    ],
 )
 @pytest.mark.parametrize(
-    ("share", "wrong"), [(1.0, False), (2.0, False), (0.5, False), (RPM, True), (-1.0, True), (1 / RPM, True)]
+    ("share", "wrong"), [(1.0, False), (1.2, False), (0.85, False), (RPM, True), (-1.0, True), (1 / RPM, True)]
 )
 def test_a_wrong_unit_and_a_wrong_way_are_seen_however_the_wire_is_counted(share, wrong, way):
     first, last = said(sea(share, **way))
     assert last is wrong
     assert (first < 30.0) is wrong
+
+
+@pytest.mark.parametrize("way", [{}, {"hold": 25}, {"step": 0.1, "speed": 200.0}, {"period": 15.0}, {"zeroed": 6.2}])
+@pytest.mark.parametrize("share", [2.0, 0.5, 1.6])
+def test_a_wire_that_follows_closely_tells_a_smaller_factor(share, way):
+    """Twice the speed, of motor and command, gave 622 N m for 381, `valid`, for good."""
+    first, last = said(sea(share, **way))
+    assert first < 30.0
+    assert last
+
+
+def test_a_wire_that_follows_late_tells_no_small_factor():
+    """What is late may be smaller as well: a filter that is half a second slow."""
+    assert said(sea(1.6, late=0.5))[0] == math.inf
+
+
+LAYERS = len(CRANE.drum.layer_radii)
+
+
+@pytest.mark.parametrize("lies", [1.0, float(LAYERS)])
+def test_a_layer_that_nobody_says_is_no_wrong_speed(lies):
+    """The outer one is taken, and on the innermost the speed seems 1.42 times as large as it is."""
+    assert said(sea(layer=math.nan, lies=lies))[0] == math.inf
+    assert said(sea(2.0, layer=math.nan, lies=lies))[1]
+
+
+def test_a_layer_said_one_too_far_is_no_wrong_speed():
+    assert said(sea(layer=2.0))[0] == math.inf
+
+
+def test_a_smaller_factor_is_told_with_what_else_may_be_why():
+    own = Agreement(CRANE, ChannelRanges(CRANE))
+    found = [own.contradictions(sample) for sample in sea(2.0)]
+    assert found[-1] == ("motor_speed contradicts wire_out: it is 2 times as large, or the hook hangs in other falls",)
 
 
 @pytest.mark.parametrize("way", [

@@ -75,9 +75,9 @@ def filtered(time_constant):
 @pytest.mark.parametrize("wave", [5.0, 8.0, 11.0, 18.0])
 @pytest.mark.parametrize("haul", [0.0, 30.0])
 @pytest.mark.parametrize("counter", [
-    lambda: lambda wire, k: wire, lambda: filtered(5.0), lambda: filtered(10.0), lambda: lambda wire, k: 0.5 * wire,
-    lambda: lambda wire, k: round(wire),
-], ids=["smooth", "5 s", "10 s", "two falls", "metres"])  # fmt: skip
+    lambda: lambda wire, k: wire, lambda: filtered(5.0), lambda: filtered(10.0), lambda: lambda wire, k: 0.85 * wire,
+    lambda: lambda wire, k: round(wire), lambda: filtered(0.5),
+], ids=["smooth", "5 s", "10 s", "slips", "metres", "0.5 s"])  # fmt: skip
 def test_a_sound_winch_is_not_told_from_its_wire(wave, haul, counter):
     assert said(voyage(shown=counter(), wave=wave, haul=haul, speed=300.0))[0] == math.inf
 
@@ -98,9 +98,9 @@ def test_a_counter_that_was_set_begins_anew():
     own = WireAgainstSpeed(CRANE, ChannelRanges(CRANE))
     for k, sample in enumerate(voyage(seconds=30.0, haul=60.0)):
         own.contradiction(sample, PERIOD if k else 0.0)
-    assert own._way.gone != 0.0
+    assert own.ways.way.gone != 0.0
     own.contradiction(replace(sample, time=sample.time + 1.1, wire_out=0.0), PERIOD)
-    assert own._way.gone == 0.0
+    assert own.ways.way.gone == 0.0
 
 
 def test_it_needs_most_of_its_time():
@@ -108,3 +108,52 @@ def test_it_needs_most_of_its_time():
     words = [way.step(float(k), 0.5, 300.0 + math.sin(0.8 * k)) for k in range(60)]
     assert not any(words[:36])
     assert all(words[36:])
+
+
+def ramps(shown):
+    """A joystick: 40 rad/s, then 92, and back, one way after the other; `shown` of the wire."""
+    gone = 0.0
+    for k in range(int(120.0 / PERIOD)):
+        time = k * PERIOD
+        wanted = min(time / 4.0, 1.0) * 40.0 if time < 16.0 else 40.0 + min((time - 16.0) / 4.0, 1.0) * 52.0
+        now = wanted if time < 34.0 else max(92.0 - 46.0 * (time - 34.0), -92.0)
+        gone -= LEVER * now * PERIOD
+        yield Sample(time, now, speed_reference=now, wire_out=shown(300.0 + gone, k), wire_layer=1.0)
+
+
+@pytest.mark.parametrize("slow", [0.5, 2.0, 5.0, 10.0])
+def test_a_slow_display_is_late_and_not_small_while_a_winch_gets_going(slow):
+    assert said(ramps(filtered(slow)))[0] == math.inf
+
+
+def calm(shown, share=1.0, seconds=600.0):
+    """A low sea of three waves, whose wire moves a few tenths of a metre."""
+    waves = [(2.0 * math.pi / period, size) for period, size in ((6.3, 40.0), (8.9, 50.0), (11.7, 35.0))]
+    for k in range(int(seconds / PERIOD)):
+        time = k * PERIOD
+        wire = 300.0 - LEVER * sum(size / omega * (1.0 - math.cos(omega * time)) for omega, size in waves)
+        now = share * sum(size * math.sin(omega * time) for omega, size in waves)
+        yield Sample(time, now, speed_reference=now, wire_out=shown(wire, k), wire_layer=1.0)
+
+
+def steps(step, hold):
+    """A counter of steps of so many m, that comes every `hold` samples."""
+    last = []
+
+    def show(wire, k):
+        if k % hold == 0:
+            last[:] = [step * round(wire / step)]
+        return last[0]
+
+    return show
+
+
+@pytest.mark.parametrize("hold", [1, 25, 50, 100])
+@pytest.mark.parametrize("step", [0.5, 1.0])
+def test_coarse_steps_are_no_way_of_the_wire(step, hold):
+    """In low seas a counter in metres, sent twice a second, was told to be of a speed a sixth as large."""
+    assert said(calm(steps(step, hold)))[0] == math.inf
+
+
+def test_fine_steps_tell():
+    assert said(calm(steps(0.02, 25), share=2.0, seconds=60.0))[0] < 25.0

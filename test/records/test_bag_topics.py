@@ -274,6 +274,6 @@ def test_a_recording_is_made_beside_its_place(tmp_path):
     """On the same disk: a move from another one would be a copy, of which a reader sees half."""
     with BagWriter(tmp_path / "new" / "log.mcap") as writer:
         (folder,) = (tmp_path / "new").iterdir()
-        assert folder.name.startswith(".log.mcap.")
+        assert folder.name.startswith(".log.")
         writer.write_raw("/a", "std_msgs/msg/String", b"\x00\x01\x00\x00\x01\x00\x00\x00\x00", 5)
     assert [each.name for each in (tmp_path / "new").iterdir()] == ["log.mcap"]

@@ -12,6 +12,7 @@ from winch_friction.physics.errors import InputError
 from winch_friction.physics.friction.model import FrictionModel
 from winch_friction.physics.signals import Run
 from winch_friction.physics.winch.crane import Crane
+from winch_friction.records.atomic import taken
 
 P = ParamSpec("P")
 R = TypeVar("R")
@@ -52,7 +53,7 @@ def vacant(path: "str | PathLike[str]", overwrite: bool) -> Path:
     """The path, where nothing is yet, or what is there may go: a log that was read, and is written with fewer columns
     under its own name, is never logged again."""
     place = Path(path)
-    if place.is_file() and not overwrite:
+    if taken(place, overwrite) and not overwrite and not place.is_dir():
         raise InputError(f"{place}: exists already; give another name, or overwrite=True to replace it")
     return place
 

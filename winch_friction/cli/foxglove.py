@@ -1,7 +1,6 @@
 """`winch-friction foxglove`: the running nodes, or a bag, for the Foxglove app; or as an MCAP file that it opens."""
 
 import contextlib
-import os
 import tempfile
 import threading
 from collections.abc import Iterator
@@ -55,11 +54,12 @@ def written(bag: Path, out: Path, namespace: str = "") -> int:
     Raises `InputError` where the file exists already or is not called .mcap.
     """
     from winch_friction.cli.live import bag_messages
+    from winch_friction.records.atomic import put, taken
     from winch_friction.records.foxglove_channels import Relay, foxglove_sdk
 
     sdk = foxglove_sdk()
-    if out.suffix != ".mcap" or out.exists():
-        said = "exists already; remove it or choose another name" if out.exists() else "must end in .mcap"
+    if out.suffix != ".mcap" or taken(out):
+        said = "exists already; remove it or choose another name" if taken(out) else "must end in .mcap"
         raise InputError(f"{out}: {said}")
     out.parent.mkdir(parents=True, exist_ok=True)
     context, count = sdk.Context(), 0
@@ -70,7 +70,7 @@ def written(bag: Path, out: Path, namespace: str = "") -> int:
             for message in bag_messages(bag, 0.0):
                 relay.take(message)
                 count += message.topic not in relay.passed
-        os.replace(made, out)
+        put(made, out)
     show_warnings(relay.passed.values())
     return count
 

@@ -84,10 +84,10 @@ def propose_map(
     from winch_friction.cli.inputs import refuse_unwritable
     from winch_friction.importing.map_text import map_text
     from winch_friction.importing.propose import propose
-    from winch_friction.records.atomic import write_text
+    from winch_friction.records.atomic import taken, write_text
     from winch_friction.records.crane_file import load_crane
 
-    if map_file.exists() and not overwrite:
+    if taken(map_file, overwrite) and not overwrite:
         raise InputError(f"{map_file}: exists; give another name, or --overwrite")
     refuse_unwritable(map_file, option="--map")
     watched = lambda paths: progress(paths, "reading logs")
@@ -176,8 +176,10 @@ def import_logs(
 
 
 def _refuse_existing(logs: list[Path], targets: list[Path], overwrite: bool) -> None:
+    from winch_friction.records.atomic import taken
+
     for target in targets:
         if target.exists() and any(target.resolve() == log.resolve() for log in logs):
             raise InputError(f"{target}: is the log itself; give another --out")
-        if target.exists() and not overwrite:
+        if taken(target, overwrite) and not overwrite:
             raise InputError(f"{target}: exists; give another --out, or --overwrite")

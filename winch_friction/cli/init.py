@@ -219,9 +219,9 @@ def _write(path: Path, text: str, overwrite: bool, as_json: bool) -> None:
 
 def _write_all(texts: dict[Path, str], overwrite: bool, as_json: bool) -> None:
     """All files or, when one of them exists, none."""
-    from winch_friction.records.atomic import write_text
+    from winch_friction.records.atomic import taken, write_text
 
-    there = [str(path) for path in texts if path.exists()]
+    there = [str(path) for path in texts if taken(path, overwrite)]
     if there and not overwrite:
         raise InputError(f"{', '.join(there)}: exists already; give another --out, or --overwrite to replace it")
     refuse_unwritable(*texts)

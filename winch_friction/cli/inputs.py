@@ -17,6 +17,7 @@ from winch_friction.cli import Modes
 from winch_friction.cli.console import stderr
 from winch_friction.fleet.recordings import RUN_SUFFIXES, TRUTH
 from winch_friction.physics.errors import InputError, Problems
+from winch_friction.records.atomic import taken
 
 T = TypeVar("T")
 
@@ -230,6 +231,7 @@ def refuse_implausible(
 _HEAD = 1 << 16  # bytes of a file, within which it says its schema or title
 PAGE = (".html", ".htm")
 MODEL = (".yaml", ".yml", "")
+FILES = (*PAGE, *MODEL[:2], ".json", ".csv", ".parquet")
 
 
 def refuse_input_as_output(out: Path | None, inputs: Iterable[Path | str | None]) -> None:
@@ -252,7 +254,7 @@ def refuse_other_kind(out: Path | None, suffixes: tuple[str, ...], what: str) ->
 def refuse_existing(overwrite: bool, *places: Path | None) -> None:
     """Raise `InputError` where one of these is there already: before the work. A bag is never overwritten."""
     for place in places:
-        if place is None or not place.exists():
+        if place is None or not taken(place, overwrite):
             continue
         if place.is_dir() or place.suffix in (".mcap", ".db3"):
             raise InputError(f"--out {place}: exists already, and a folder or bag is never replaced; give another name")
@@ -266,7 +268,7 @@ def refuse_foreign(out: Path | None, names: Sequence[str], mark: str, schema: st
     An earlier call has left `mark`, which says `schema`; the names may be patterns. Without `overwrite` an earlier
     result is refused as well. So is a folder that is to be made under the name of a file.
     """
-    if out is not None and not out.exists() and out.suffix.lower() in (*PAGE, *MODEL[:2], ".json", ".csv", ".parquet"):
+    if out is not None and not taken(out / mark, overwrite) and not out.exists() and out.suffix.lower() in FILES:
         raise InputError(f"--out {out}: this verb writes a folder of files; give a name without {out.suffix}")
     if out is None or not out.is_dir():
         return
@@ -274,9 +276,7 @@ def refuse_foreign(out: Path | None, names: Sequence[str], mark: str, schema: st
     if made.is_file() and schema.encode() in made.read_bytes()[:_HEAD]:
         if overwrite:
             return
-        raise InputError(
-            f"--out {out}: holds an earlier result ({mark}); give another folder, or --overwrite to replace it"
-        )
+        raise InputError(f"--out {out}: holds an earlier result ({mark}); give another folder, or use --overwrite")
     there = sorted(each.name for name in names for each in out.glob(name))
     if there:
         raise InputError(

@@ -143,9 +143,10 @@ def _plan(name: str, seed: int, out: Path, kind: str) -> list[tuple[Any, int, Pa
 
 
 def _refuse_overwriting(paths: list[Path], overwrite: bool) -> None:
+    from winch_friction.records.atomic import taken
     from winch_friction.records.runs import BAG_SUFFIXES
 
-    there = [path for path in paths if path.exists()]
+    there = [path for path in paths if taken(path, overwrite)]
     more = f" and {len(there) - 1} more of {len(paths)}" if len(there) > 1 else ""
     for path in there:
         if path.suffix in BAG_SUFFIXES:

@@ -7,7 +7,7 @@ from enum import Enum
 from typing import Any
 
 from winch_friction.compensation.safe_output import AGAINST_SPEED, LONGEST_LAG
-from winch_friction.online.doubt import Doubt, LoadAgainstDrive, StandingReadings, Way, WireAgainstSpeed, span
+from winch_friction.online.doubt import Doubt, LoadAgainstDrive, SlowWave, StandingReadings, Way, WireAgainstSpeed, span
 from winch_friction.physics.signals import Sample
 from winch_friction.physics.winch.crane import Crane, sample_drive_torque
 from winch_friction.physics.winch.operating_point import SPEED_APART, SPEED_SHARE, ChannelRanges
@@ -251,8 +251,8 @@ class Agreement:
         self._jumps: list[float] = []
         crane, ranges = self._crane, self._ranges
         self._speeds, self._load = Doubt(SPEED_TIME), LoadAgainstDrive(crane, ranges)
-        standing = StandingReadings(AGAINST_SPEED * crane.speed_scale)
-        self._watches = self._load, standing, WireAgainstSpeed(crane, ranges), DriveByItself(crane, ranges)
+        slow, standing = (kind(AGAINST_SPEED * crane.speed_scale) for kind in (SlowWave, StandingReadings))
+        self._watches = self._load, standing, WireAgainstSpeed(crane, ranges), DriveByItself(crane, ranges), slow
         # messages in batches: a command that is right in one sample of each is none
         self._turns = Doubt(LONGEST_LAG, forgiven=LONGEST_LAG)
 

@@ -11,9 +11,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from winch_friction.compensation import CompensatorConfig, Feedforward, FeedforwardCompensator
-from winch_friction.compensation.safe_output import AGAINST_SPEED
 from winch_friction.online.agreement import Agreement
-from winch_friction.online.doubt import Doubt, span
 from winch_friction.online.inputs import InputGate, ServiceOptions
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.friction import FrictionModel
@@ -86,38 +84,6 @@ def refuse_other_terms(learned: FrictionModel, given: FrictionModel) -> None:
         )
 
 
-# -- a command beside a slow motion
-# s of a mean, of motion remembered, until it is known; share of AGAINST_SPEED below which a mean is noise; share of the
-# motion against the command: of healthy winches next to nothing, of what has nothing to do with them a half
-MEAN_OF, SLOW_MEMORY, SLOW_KNOWN, SLOWEST, MOST_AGAINST = 1.0, 20.0, 10.0, 0.2, 1.0 / 3.0
-
-
-class SlowMotion:
-    """Whether the command, by its means over a second, turns against a speed below `moving` rad/s in each wave."""
-
-    def __init__(self, moving: float) -> None:
-        self._moving, self._time, self._doubt = moving, math.nan, Doubt(2.0 * MEAN_OF)
-        self._passed = self._turned = self._asked = self._known = self._against = 0.0  # s, rad, rad, s, s
-
-    def contradiction(self, sample: Sample) -> tuple[str, ...]:
-        """What does not fit, in words; nothing where no command comes (NaN turns against nothing)."""
-        dt, self._time = span(self._time, sample.time), sample.time
-        self._turned, self._asked = self._turned + dt * sample.motor_speed, self._asked + dt * sample.speed_reference
-        self._passed += dt
-        if self._passed >= MEAN_OF:
-            self._doubt.step(self._turns_against(abs(self._turned) / self._passed), self._passed)
-            self._passed = self._turned = self._asked = 0.0
-        return ("speed_reference turns against a slow motor_speed in wave after wave",) if self._doubt.stands else ()
-
-    def _turns_against(self, speed: float) -> bool | None:
-        if not speed >= SLOWEST * self._moving:  # NaN as well
-            return None
-        kept = math.exp(-self._passed / SLOW_MEMORY) if speed < self._moving else 0.0
-        self._known = self._known * kept + self._passed
-        self._against = self._against * kept + self._passed * (self._turned * self._asked < 0.0)
-        return self._known >= SLOW_KNOWN and self._against > MOST_AGAINST * self._known
-
-
 # -- the service
 HEARTBEAT = 25  # steps of the watchdog between two zeros, once the ramp is over
 
@@ -147,7 +113,6 @@ class CompensatorService:
         hold = InputHold(topics.groups, self.law.config.max_age, dict(self.law.config.max_ages))
         self.inputs = InputGate(crane, topics, hold, self.options, self._jumped)
         self._agreement = Agreement(crane, self.inputs.ranges, self.law.config.lead, self.law.config.load)
-        self._slow = SlowMotion(AGAINST_SPEED * self.law.crane.speed_scale)
         self._silence, self._last_stamp = _Silence(), math.nan
         self.contradictions: tuple[str, ...] = ()
         self._given = seed  # by whoever runs the node: what is learned is learned of its terms
@@ -169,8 +134,7 @@ class CompensatorService:
     def answer(self, sample: Sample, now: float) -> Feedforward:
         """The answer to a sample of `inputs`."""
         self._take_over(self.schedule.due(sample.time))
-        found = self._agreement.contradictions(sample, now if self.options.paced else math.nan)
-        self.contradictions = found + self._slow.contradiction(sample)
+        self.contradictions = self._agreement.contradictions(sample, now if self.options.paced else math.nan)
         self._silence = _Silence(sample.time + self.law.config.max_age)
         self._last_stamp = sample.time
         asked = self.inputs.stamp("speed_reference", sample.time)
@@ -258,7 +222,6 @@ class CompensatorService:
     def _jumped(self) -> None:
         self.schedule.clear()
         self._agreement.forget()
-        self._slow = SlowMotion(AGAINST_SPEED * self.law.crane.speed_scale)
         self.law.reset()
 
     def ending(self, now: float) -> Iterator[tuple[float, Feedforward]]:

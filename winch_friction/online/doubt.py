@@ -9,7 +9,7 @@ import math
 from dataclasses import dataclass, field
 
 from winch_friction.compensation.safe_output import AGAINST_SPEED
-from winch_friction.online.wire_way import MOST_APART, WireWay
+from winch_friction.online.wire_way import WireWays
 from winch_friction.physics.signals import Sample
 from winch_friction.physics.winch.crane import Crane, sample_drive_torque, sample_load
 from winch_friction.physics.winch.operating_point import ChannelRanges, has_torque, readings_of, shown_by
@@ -107,64 +107,63 @@ class StandingReadings:
 
 
 # -- the speed and the wire that is paid out
-# s between two readings that are compared (a counter has steps and comes late), of motion remembered, until it counts
-WIRE_STEP, WIRE_MEMORY, WIRE_TIME = 1.0, 20.0, 2.0
-LEAST_WAY, LEAST_STEPS = 1.0, 8  # m of wire, some steps of any counter, and comparisons: a few always lie on a line
-FOLLOWS = 0.8  # correlation from which one moves as the other does: of a wire that is a tenth of a wave late
+WIRE_STEP, WIRE_TIME = 1.0, 2.0  # s between readings that are compared (a counter has steps, is late); until it counts
 
 
 class WireAgainstSpeed:
     """Whether the speed has the unit and the direction that the wire shows; a command of the same program has both."""
 
     def __init__(self, crane: Crane, ranges: ChannelRanges) -> None:
-        self._crane, self._largest, self._moving = crane, ranges.speed, AGAINST_SPEED * crane.speed_scale  # rad/s
-        self._doubt, self._how, self._time, self._way = Doubt(WIRE_TIME), "", math.nan, WireWay()
-        self._begin(math.nan)
+        self._moving, self.ways = AGAINST_SPEED * crane.speed_scale, WireWays(crane, ranges.speed)
+        self._doubt, self._time, self._shown = Doubt(WIRE_TIME), math.nan, math.nan
+        self._turned = self._passed = 0.0  # since a reading that was compared
 
     def contradiction(self, sample: Sample, dt: float) -> str:
         """What does not fit after `dt` s more, in words, '' for nothing."""
-        passed, self._time = sample.time - self._time, sample.time
-        self._passed += passed
-        self._turned += sample.motor_speed * passed
+        passed, step, ways = sample.time - self._time, abs(sample.wire_out - self._shown), self.ways
+        self._time, self._shown = sample.time, sample.wire_out
+        self._passed, self._turned = self._passed + passed, self._turned + sample.motor_speed * passed
+        ways.finest = min(ways.finest, step) if step > 0.0 else ways.finest
         if not 0.0 <= passed <= LONGEST_SPAN:  # over a gap nobody knows how far it turned
-            self._begin(sample.wire_out)
-        elif self._passed >= WIRE_STEP and sample.wire_out != self._last:
-            self._compare(sample)
-        wrong = self._wrong if abs(sample.motor_speed) > self._moving else None
-        return f"motor_speed contradicts wire_out: {self._how}" if self._doubt.step(wrong, dt) else ""
+            ways.begin(sample.wire_out)
+            self._turned = self._passed = 0.0
+        elif self._passed >= WIRE_STEP and sample.wire_out != ways.last:
+            ways.compare(sample.time, sample.wire_out, sample.wire_layer, self._turned, self._passed)
+            self._turned = self._passed = 0.0
+        wrong = ways.wrong if abs(sample.motor_speed) > self._moving else None
+        return f"motor_speed contradicts wire_out: {ways.how}" if self._doubt.step(wrong, dt) else ""
 
-    def _begin(self, reading: float) -> None:
-        """Compare from a reading on, m, without what was summed up before."""
-        self._wrong: bool | None = None
-        self._last, self._turned, self._passed, self._steps = reading, 0.0, 0.0, 0  # comparisons
-        self._speeds = self._wires = self._both = self._gone = 0.0  # sums of squares and of products, m2; m
-        self._way.forget()
 
-    def _compare(self, sample: Sample) -> None:
-        """One step more of both ways; a counter that was set, or shows nothing, begins anew."""
-        wire, drum = sample.wire_out - self._last, self._crane.drum
-        lever = drum.radius(sample.wire_layer) / self._crane.gear_ratio if drum.has(sample.wire_layer) else 0.0  # m/rad
-        if not abs(wire) <= lever * self._largest * self._passed:  # NaN as well
-            self._begin(sample.wire_out)
-            return
-        kept, way = math.exp(-self._passed / WIRE_MEMORY), -lever * self._turned
-        self._speeds = self._speeds * kept + way * way
-        self._wires = self._wires * kept + wire * wire
-        self._both = self._both * kept + way * wire
-        self._gone, self._steps = self._gone * kept + max(abs(way), abs(wire)), self._steps + 1
-        goes_on = self._way.step(sample.time, way, sample.wire_out)
-        self._last, self._turned, self._passed, self._wrong = sample.wire_out, 0.0, 0.0, bool(goes_on) or self._differ()
-        self._how = goes_on or self._how
+# -- a command beside a slow motion
+# s of a mean, of motion remembered, until it is known; share of AGAINST_SPEED below which a mean is noise; share of the
+# motion against the command: of healthy winches next to nothing, of what has nothing to do with them a half
+MEAN_OF, SLOW_MEMORY, SLOW_KNOWN, SLOWEST, MOST_AGAINST = 1.0, 20.0, 10.0, 0.2, 1.0 / 3.0
+SLOW_SAID = "speed_reference turns against a slow motor_speed in wave after wave"
 
-    def _differ(self) -> bool | None:
-        """Whether the two are not one motion; None where the wire does not follow, or too little of it is known."""
-        size = math.sqrt(self._speeds * self._wires)
-        known = self._gone >= LEAST_WAY and self._steps >= LEAST_STEPS
-        if not known or size == 0.0 or abs(self._both) < FOLLOWS * size:
+
+class SlowWave:
+    """Whether the command, by its means over a second, turns against a speed below `moving` rad/s in each wave."""
+
+    def __init__(self, moving: float) -> None:
+        self._moving, self._doubt = moving, Doubt(2.0 * MEAN_OF)
+        self._passed = self._turned = self._asked = self._known = self._against = 0.0  # s, rad, rad, s, s
+
+    def contradiction(self, sample: Sample, dt: float) -> str:
+        """What does not fit after `dt` s more, in words, '' for nothing; a command of NaN turns against nothing."""
+        self._turned, self._asked = self._turned + dt * sample.motor_speed, self._asked + dt * sample.speed_reference
+        self._passed += dt
+        if self._passed >= MEAN_OF:
+            self._doubt.step(self._turns_against(abs(self._turned) / self._passed), self._passed)
+            self._passed = self._turned = self._asked = 0.0
+        return SLOW_SAID if self._doubt.stands else ""
+
+    def _turns_against(self, speed: float) -> bool | None:
+        if not speed >= SLOWEST * self._moving:  # NaN as well
             return None
-        times, turned = math.sqrt(self._speeds / self._wires), self._both < 0.0
-        self._how = "it turns the wrong way" if turned else f"it is {times:.2g} times as large"
-        return turned or not 1.0 / MOST_APART <= times <= MOST_APART
+        kept = math.exp(-self._passed / SLOW_MEMORY) if speed < self._moving else 0.0
+        self._known = self._known * kept + self._passed
+        self._against = self._against * kept + self._passed * (self._turned * self._asked < 0.0)
+        return self._known >= SLOW_KNOWN and self._against > MOST_AGAINST * self._known
 
 
 # -- the load that is shown and the drive's torque

@@ -1,4 +1,4 @@
-"""Whether the speed goes on one way while the wire that is paid out comes and goes.
+"""Whether the speed and the wire that is paid out are one motion: of one unit, one direction and one way.
 
 A speed and a command that stand with noise, are both off by a zero error or have both lost their sign follow no wire,
 and no unit or direction can be told of them: the friction of one way was fed forward through every wave, for good.
@@ -7,6 +7,8 @@ and no unit or direction can be told of them: the friction of one way was fed fo
 import math
 from collections import deque
 from dataclasses import dataclass, field
+
+from winch_friction.physics.winch.crane import Crane
 
 # s that are looked at, in thirds: the mean over 13 s moves little with a wave, however slowly the counter follows it
 SPAN = 40.0
@@ -56,3 +58,76 @@ class WireWay:
         first = [gone for t, gone, _ in self._seen if t - self._seen[0][0] < third]
         last = [gone for t, gone, _ in self._seen if time - t < third]
         return abs(sum(last) / len(last) - sum(first) / len(first))
+
+
+# -- the ways of both, from one reading to the next
+WIRE_MEMORY = 20.0  # s of motion remembered
+LEAST_WAY, LEAST_STEPS = 1.0, 8  # m of wire, some steps of any counter, and comparisons: a few always lie on a line
+FOLLOWS = 0.8  # correlation from which one moves as the other does: of a wire that is a tenth of a wave late
+# correlation from which a filter, or noise, makes one no more than 1.05 times the other: its size goes as its cosine.
+# A layer that was said one too far or too late is a tenth; slip, stretch and a drum's radius are some per cent
+CLOSELY, NEARLY = 0.95, 1.3
+# and where the wire comes and goes, by this share of the motion either way at least: what is late does not follow then,
+# as it does while a winch gets going. Finest steps that the wire goes in the mean of the comparisons: each is off by
+# one at most, by half of that in the mean
+EACH_WAY, COUNTS = 0.1, 2.0
+OTHER_FALLS = ", or the hook hangs in other falls"
+
+
+class WireWays:
+    """Remembers how far the speed, at most `largest` rad/s, and the wire went between two readings of the counter.
+
+    `wrong`: whether they cannot be one motion, None where it is not known, and `how`, in words; `last`, the reading in
+    m that is compared with, and `finest`, the smallest step that the counter showed, m.
+    """
+
+    def __init__(self, crane: Crane, largest: float) -> None:
+        self._crane, self._largest, self.way, self.how = crane, largest, WireWay(), ""
+        self.begin(math.nan)
+
+    def begin(self, reading: float) -> None:
+        """Compare from a reading on, m, without what was summed up before."""
+        self.wrong: bool | None = None
+        self.last, self.finest, self._steps = reading, math.inf, 0  # comparisons
+        self._speeds = self._wires = self._both = self._gone = 0.0  # sums of squares and of products, m2; m
+        self._weight = self._hoisted = 0.0  # comparisons that are remembered; m2 of hoisting
+        self.way.forget()
+
+    def compare(self, time: float, reading: float, layer: float, turned: float, passed: float) -> None:
+        """One step more, in `passed` s: the counter in m, the motor in rad. A counter that was set, or shows nothing,
+        begins anew."""
+        wire, drum = reading - self.last, self._crane.drum
+        lever = drum.radius(layer) / self._crane.gear_ratio if drum.has(layer) else 0.0  # m/rad
+        if not abs(wire) <= lever * self._largest * passed:  # NaN as well
+            self.begin(reading)
+            return
+        kept, way = math.exp(-passed / WIRE_MEMORY), -lever * turned
+        self._speeds = self._speeds * kept + way * way
+        self._wires = self._wires * kept + wire * wire
+        self._both = self._both * kept + way * wire
+        self._gone, self._steps = self._gone * kept + max(abs(way), abs(wire)), self._steps + 1
+        self._weight, self._hoisted = self._weight * kept + 1.0, self._hoisted * kept + min(way, 0.0) ** 2
+        goes_on = self.way.step(time, way, reading)
+        self.last, self.wrong = reading, bool(goes_on) or self._differ(layer)
+        self.how = goes_on or self.how
+
+    def _differ(self, layer: float) -> bool | None:
+        """Whether the two are not one motion; None where the wire does not follow, or too little of it is known."""
+        size = math.sqrt(self._speeds * self._wires)
+        known = self._gone >= LEAST_WAY and self._steps >= LEAST_STEPS
+        if not known or size == 0.0 or abs(self._both) < FOLLOWS * size:
+            return None
+        times, turned = math.sqrt(self._speeds / self._wires), self._both < 0.0
+        counts = self._wires >= self._weight * (COUNTS * self.finest) ** 2  # not rounding
+        apart = times > MOST_APART or (times < 1.0 / MOST_APART and counts)
+        self.how = f"it is {times:.2g} times as large{'' if apart else OTHER_FALLS}"
+        self.how = "it turns the wrong way" if turned else self.how
+        if turned or apart or 1.0 / NEARLY <= times <= NEARLY * self._inner(layer):
+            return turned or apart
+        both_ways = EACH_WAY * self._speeds <= self._hoisted <= (1.0 - EACH_WAY) * self._speeds
+        return True if both_ways and counts and self._both >= CLOSELY * size else None
+
+    def _inner(self, layer: float) -> float:
+        """How many times too large the speed seems where nobody says that the wire lies on an inner layer."""
+        radii = self._crane.drum.layer_radii
+        return max(radii) / min(radii) if layer != layer else 1.0

@@ -1,4 +1,4 @@
-"""Writing files so that a reader sees the old content or the new, never half of it.
+"""Writing files so that a reader sees the old content or the new, never half of it, and nothing is replaced unasked.
 
 What a kill in the moment of renaming leaves beside a file is removed by the next one who writes or reads it anew.
 """
@@ -11,6 +11,46 @@ import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from tempfile import mkdtemp
+
+_ONLY_NEW: set[str] = set()  # places at which nothing was, until this process has written there
+MEANWHILE = "was made meanwhile by another command, and is not replaced; give another name"
+
+
+def taken(path: Path, overwrite: bool = False) -> bool:
+    """Whether something is at a place, a link to nothing as well. Without `overwrite` this process then writes there
+    only if nothing is there yet at that moment: two that began at the same time had both found nothing."""
+    (_ONLY_NEW.discard if overwrite else _ONLY_NEW.add)(os.path.abspath(path))
+    return os.path.lexists(path)
+
+
+def put(made: Path, path: Path, new: bool = False) -> None:
+    """Move what was made to its place; `FileExistsError` where something must not be replaced: at a `new` place,
+    or at one that was found not to be `taken`."""
+    key = os.path.abspath(path)
+    if not new and key not in _ONLY_NEW:
+        os.replace(made, path)
+        return
+    try:
+        _claim(made, path)
+    except FileExistsError:
+        raise FileExistsError(errno.EEXIST, MEANWHILE, str(path)) from None
+    _ONLY_NEW.discard(key)
+
+
+def _claim(made: Path, path: Path) -> None:
+    if made.is_dir():
+        path.mkdir()  # an empty folder is replaced
+    else:
+        try:
+            os.link(made, path)
+            made.unlink()
+            return
+        except FileExistsError:
+            raise
+        except OSError:  # a file system without links to files
+            os.close(os.open(path, os.O_CREAT | os.O_EXCL))
+    os.replace(made, path)
 
 
 @contextmanager
@@ -45,7 +85,7 @@ def atomic_path(path: Path) -> Iterator[Path]:
             yield temporary
             _flush_to_disk(temporary)
             os.chmod(temporary, 0o666 & ~_umask())
-            os.replace(temporary, path)
+            put(temporary, path)
     finally:
         temporary.unlink(missing_ok=True)
 
@@ -65,7 +105,7 @@ def together(folder: Path, mark: str) -> Iterator[Path]:
     try:
         yield temporary
         for each in sorted(temporary.iterdir(), key=lambda path: (path.name != mark, path.name)):
-            os.replace(each, own.parent / each.name)
+            put(each, own.parent / each.name)
     except OSError as error:  # nobody knows the hidden folder
         named = Path(str(error.filename or ""))
         if named.parent != temporary:
@@ -108,7 +148,7 @@ def _write_nameless(path: Path, content: bytes) -> bool:
         except OSError:  # no /proc
             return False
     try:
-        os.replace(temporary, path)
+        put(temporary, path)
     finally:
         temporary.unlink(missing_ok=True)
     return True
@@ -117,6 +157,11 @@ def _write_nameless(path: Path, content: bytes) -> bool:
 def _beside(path: Path) -> Path:
     """The temporary file of this process and thread; its name says whose it is."""
     return path.with_name(f".{path.stem}.{os.getpid()}-{threading.get_ident()}.tmp{path.suffix}")
+
+
+def own_folder(path: Path) -> Path:
+    """A new hidden folder beside a place, for what is to be moved there; its name says whose it is."""
+    return Path(mkdtemp(dir=path.parent, prefix=f".{path.stem}.{os.getpid()}-", suffix=f".tmp{path.suffix}"))
 
 
 def remove_stale(path: Path) -> None:

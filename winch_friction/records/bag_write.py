@@ -2,7 +2,6 @@
 
 import json
 import shutil
-import tempfile
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 from types import TracebackType
@@ -12,7 +11,7 @@ import numpy as np
 
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.signals import Run
-from winch_friction.records.atomic import writing
+from winch_friction.records.atomic import own_folder, put, remove_stale, taken, writing
 from winch_friction.records.bags import METADATA_KEY
 from winch_friction.records.topics import TopicMap
 
@@ -72,7 +71,7 @@ class BagWriter:
 
     def __init__(self, path: Path | str, storage: str = "", metadata: dict[str, Any] | None = None) -> None:
         self.path = Path(path)
-        if self.path.exists():
+        if taken(self.path):
             raise InputError(f"{self.path}: exists already; remove it or choose another name")
         self._storage = _storage(self.path, storage)
         self.metadata = metadata if metadata is not None else {}
@@ -82,7 +81,8 @@ class BagWriter:
         from rosbags.rosbag2 import StoragePlugin, Writer
 
         self.path.parent.mkdir(parents=True, exist_ok=True)
-        self._folder = Path(tempfile.mkdtemp(dir=self.path.parent, prefix=f".{self.path.name}."))
+        remove_stale(self.path)
+        self._folder = own_folder(self.path)
         plugin = StoragePlugin.MCAP if self._storage == "mcap" else StoragePlugin.SQLITE3
         self._writer = Writer(self._folder / self.path.stem, version=9, storage_plugin=plugin)
         self._writer.open()
@@ -123,7 +123,7 @@ class BagWriter:
         made = self._folder / self.path.stem
         if self.path.suffix in STORAGES:
             made = next(iter(_storage_files(made)))
-        made.rename(self.path)
+        put(made, self.path, new=True)
 
 
 def _storage(path: Path, storage: str) -> str:

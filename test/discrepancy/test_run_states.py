@@ -38,6 +38,7 @@ from winch_friction.records.model_file import load_model, save_model
 
 SEED = 4407
 FULL = 12
+LAYERS = np.array([1, 2, 4, 2, 3, 1, 4, 3, 2, 1, 3, 4], float)  # of the drum, in no rhythm that hours have as well
 
 
 def gap(runs, model=None):
@@ -184,7 +185,7 @@ def test_levels_that_a_logged_signal_or_the_date_says_are_no_amounts_of_a_brake(
     def run(k, load, kind=("main",)):
         group = SimpleNamespace(balances=True, displacement=np.full(5, 2e-5), pressure=np.zeros(5))
         channels = {"hook_load": np.full(5, load), "time": np.arange(5.0)}
-        channels["wire_layer"] = np.full(5, 1.0 + k % 4)
+        channels["wire_layer"] = np.full(5, LAYERS[k])
         channels["oil_temperature"] = np.full(5, 20.0 + 7.0 * (k * 5 % 12))
         return SimpleNamespace(
             channels=channels, used=np.ones(5, bool), kind=kind, groups=[group], start=1e9 + 41_000.0 * k,
@@ -205,7 +206,7 @@ def test_levels_that_a_logged_signal_or_the_date_says_are_no_amounts_of_a_brake(
         assert all(follows_a_signal(runs, levels) for levels in (heavier, bent, later, heavier + of_mode, step)), seed
         oil = np.array([each.channels["oil_temperature"][0] for each in runs])
         warm = 1e-6 * load * (oil - 40.0) + noise  # the product of two
-        of_layer = np.array([0.0, 4.0, 0.0, 4.0])[np.arange(FULL) % 4] + noise  # on two layers that are no neighbours
+        of_layer = 4.0 * np.isin(LAYERS, (2.0, 4.0)) + noise  # on two layers that are no neighbours
         by_night = 3.0 * np.sin(2.0 * np.pi * np.array([each.start for each in runs]) / 86400.0) + noise
         assert all(follows_a_signal(runs, levels) for levels in (warm, of_layer, by_night)), seed
     assert np.mean(seeming) < 0.15

@@ -443,6 +443,16 @@ def test_a_mass_is_missing_in_whatever_tells_the_load(name, truth, crane_150t, c
         corrected(told_by(truth), crane_150t, model)
 
 
+def test_a_mass_acts_on_the_layer_that_was_said_last(truth, crane_150t, crane2_model):
+    """A layer that is said now and then holds in between, as it does for every other lever of the run."""
+    run, model = told_by(truth, "load_torque"), replace(crane2_model, corrections=(Correction("tare_load", 50.0),))
+    said = np.full(len(run.time), np.nan)
+    said[0] = 2.0
+    now_and_then = Run("now and then", {**run.columns, "wire_layer": said})
+    at_shaft = GRAVITY * 50.0 * crane_150t.drum.radius(2.0) / crane_150t.gear_ratio
+    np.testing.assert_allclose(corrected(now_and_then, crane_150t, model)[0]["load_torque"] - 2.4e3, at_shaft)
+
+
 def test_a_running_node_puts_the_mass_into_the_ropes_force_where_no_cell_weighs(truth, crane_150t, crane2_model):
     model = replace(crane2_model, corrections=(Correction("tare_load", 50.0), Correction("wire_weight", 2.0)))
     corrector, sample = SampleCorrector(crane_150t, model), next(iter(told_by(truth, "rope_force").samples()))

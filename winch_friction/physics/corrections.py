@@ -24,7 +24,7 @@ from winch_friction.physics.friction.correction import Correction
 from winch_friction.physics.friction.declared_correction import Action
 from winch_friction.physics.friction.model import FrictionModel
 from winch_friction.physics.signals import GROUP_CHANNELS, FloatArray, Run
-from winch_friction.physics.winch.crane import Crane, Drum, driving_group
+from winch_friction.physics.winch.crane import Crane, Drum, driving_group, run_rope_radius
 
 Columns = dict[str, FloatArray]
 SIGNAL_ORDER = (
@@ -206,9 +206,7 @@ def _mass(columns: Columns, run: Run, c: Correction, crane: Crane) -> Columns:
     mass = c.error(columns["time"], None) * (columns["wire_out"] if "wire_out" in c.declared.reads else 1.0)
     shown: Columns = {"hook_load": mass} if "hook_load" in columns else {"rope_force": GRAVITY * mass}
     if "load_torque" in columns:
-        layers = columns.get("wire_layer", np.array([np.nan]))
-        radius = np.array([crane.drum.radius(float(k)) for k in layers])
-        shown["load_torque"] = mass * GRAVITY * radius / crane.gear_ratio
+        shown["load_torque"] = mass * GRAVITY * run_rope_radius(replace(run, columns=columns), crane) / crane.gear_ratio
     return columns | {name: columns[name] + more for name, more in shown.items() if name in columns}
 
 

@@ -15,7 +15,7 @@ from winch_friction.discrepancy.engine.blocks import Slot
 from winch_friction.discrepancy.engine.chance import levels_of_runs
 from winch_friction.discrepancy.engine.crossfit import CrossFit, Explanation, on_their_own
 from winch_friction.discrepancy.engine.grammar import Factor, Scored
-from winch_friction.discrepancy.engine.problem import NOT_ZERO, of_base, shares_by_run
+from winch_friction.discrepancy.engine.problem import of_base, shares_by_run
 from winch_friction.discrepancy.engine.selection import Selection
 from winch_friction.discrepancy.proof import Trial, at_the_floor
 from winch_friction.discrepancy.proposals import near_laws
@@ -63,17 +63,13 @@ def no_port(parameters: Mapping[str, Estimates]) -> str:
 
 
 def surely_some(amounts: Estimates, file: FrictionModel) -> float:
-    """Standard deviations by which the amounts of a cause are some: the surest by itself, or all together.
-
-    Of two that a file ties each may be none, and yet not both. Of corrections a file knows their own deviations alone.
-    """
-    each = max((abs(a.value) / max(a.std, NOT_ZERO) for a in amounts.values()), default=0.0)
+    """Standard deviations by which the amounts of a cause are some together: of two that a file ties each may be none,
+    and yet not both. 0 where the file does not know how they are tied, as it does not of corrections."""
     names, covariance = file.parameter_names, file.covariance
     if covariance is None or not {*amounts} <= {*names}:
-        return each
+        return 0.0
     at, value = [names.index(name) for name in amounts], np.array([a.value for a in amounts.values()])
-    chance = chdtrc(len(at), value @ np.linalg.solve(covariance[np.ix_(at, at)], value))
-    return max(each, float(np.sqrt(chdtri(1, chance))))
+    return float(np.sqrt(chdtri(1, chdtrc(len(at), value @ np.linalg.solve(covariance[np.ix_(at, at)], value)))))
 
 
 def told_by_chance(trial: Trial) -> str:

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from scipy.optimize import lsq_linear
 
+from winch_friction.discrepancy.engine import problem
 from winch_friction.discrepancy.engine.problem import bounded_fit
 
 
@@ -65,3 +66,14 @@ def test_a_coefficient_without_room_stays_where_it_is_held():
     for start in (None, held.copy()):
         found = bounded_fit(h, g, held, np.array([0.5, 5.0]), start)
         np.testing.assert_allclose(found, [0.5, 0.25])
+
+
+@pytest.mark.parametrize("seed", [108, 234, 651, 877])
+def test_what_goes_in_circles_by_exchanging_all_ends_by_exchanging_one(seed, monkeypatch):
+    """Of 3000 such problems, none of them badly conditioned, 12 would go on for ever."""
+    rng = np.random.default_rng(seed)
+    a = rng.normal(size=(30, 3)) @ rng.normal(size=(3, 12)) + 0.3 * rng.normal(size=(30, 12))
+    y, lower, upper = rng.normal(size=30) * 5.0, np.zeros(12), np.full(12, 10.0)
+    monkeypatch.setattr(problem, "_slowly", lambda *_: pytest.fail("went in circles"))
+    expected = lsq_linear(a, y, (lower, upper), method="bvls", tol=1e-14).x
+    np.testing.assert_allclose(bounded_fit(a.T @ a, a.T @ y, lower, upper), expected, atol=1e-8)

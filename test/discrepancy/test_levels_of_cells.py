@@ -372,3 +372,11 @@ def test_values_without_a_mean_are_told_by_students_test():
 def test_levels_are_said_once_by_their_ends():
     said = again._said(np.array([0.001, -0.004, 0.0025]))
     assert "by another amount in each run, -0.4 to +0.25 % of the load" in said
+
+
+def test_a_signal_is_asked_of_the_order_and_of_the_values_and_either_may_be_by_chance():
+    layer, alone = np.array([1.0, 2.0, 2.0, 1.0, 1.0, 2.0, 2.0, 1.0]), np.arange(8.0)
+    by_order, by_value = chance_of_order(layer, NARROW), again._chance_of_values(layer, NARROW)
+    assert 0.0 < by_value < by_order < 1.0
+    assert again._chance(layer, NARROW) == 2.0 * by_value
+    assert again._chance(alone, NARROW) == chance_of_order(alone, NARROW)  # each at a value of its own

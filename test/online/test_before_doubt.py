@@ -1,6 +1,7 @@
 """What is learned while a load cell lies and nobody has noticed yet is neither published nor kept."""
 
 import json
+import math
 from collections.abc import Iterator
 from dataclasses import replace
 
@@ -9,6 +10,7 @@ from sea import CRANE, SEED, TOPICS
 
 from winch_friction.estimation import FrictionEstimator
 from winch_friction.estimation.dynamics import LOAD
+from winch_friction.online.before_doubt import WIRE_UNSEEN
 from winch_friction.online.estimator import EstimatorService
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.signals import Sample
@@ -115,3 +117,37 @@ def test_taking_back_keeps_shaft_wire_and_load_and_the_seeds_sigma_again(sea: tu
     assert law._filter.P[LOAD, LOAD] == pytest.approx((law.config.load_std * load / CRANE.gear_ratio) ** 2)
     assert law.step(samples[-1]).accepted
     assert law.drum_torque == pytest.approx(load, rel=law.config.load_std)
+
+
+def of_both_speeds(sea: tuple[Sample, ...], begin: float, end: float, times: float) -> Iterator[Sample]:
+    """The sea from `begin` to `end` s with a speed and a command that are both `times` what they are."""
+    for each in fed(sea, begin, end, 0.0):
+        yield replace(each, motor_speed=times * each.motor_speed, speed_reference=times * each.speed_reference)
+
+
+def test_what_a_speed_that_the_wire_contradicts_has_taught_is_taken_back(sea: tuple[Sample, ...]) -> None:
+    """It takes two waves and more to show, and only the last five seconds of them were taken back: with a speed of 1.6
+    times what it is a parameter stood 8 of its sigmas off, and was learned on from there and published, `converged`."""
+    service = EstimatorService(CRANE, SEED, TOPICS)
+    published(service, fed(sea, 0.0, WRONG_FROM, 0.0))
+    published(service, of_both_speeds(sea, WRONG_FROM, 80.0, 1.6))
+    assert service.contradiction.startswith("motor_speed contradicts wire_out")
+    assert service.law.model().values == SEED.values  # within a minute there is nothing else to go back to
+
+
+def test_more_is_taken_back_where_a_doubt_joins_that_takes_longer_to_show(monkeypatch: pytest.MonkeyPatch) -> None:
+    service, told = EstimatorService(CRANE, SEED, TOPICS), list[float]()
+    monkeypatch.setattr(service._before, "go_back", told.append)
+    for said, seconds in (("cell", 0.0), ("cell", 0.0), ("cell", WIRE_UNSEEN), ("wire", 0.0), ("gain", math.inf)):
+        service.contradiction = said
+        service._take_back(seconds)
+    assert told == [0.0, WIRE_UNSEEN, math.inf]
+    service.contradiction = ""
+    service._take_back(0.0)
+    service.contradiction = "cell"
+    service._take_back(0.0)
+    assert told[3:] == [0.0]
+    service.reset()
+    service.contradiction = "cell"
+    service._take_back(0.0)
+    assert told[4:] == [0.0]

@@ -3,7 +3,7 @@
 import pytest
 from sea import CRANE, TOPICS, Fed
 
-from winch_friction.online.before_doubt import UNSEEN, BeforeDoubt
+from winch_friction.online.before_doubt import UNSEEN, WIRE_UNSEEN, BeforeDoubt
 from winch_friction.online.consumer import HeldTorque
 from winch_friction.physics.winch.operating_point import ChannelRanges
 from winch_friction.records.sample_stream import Plausibility
@@ -33,6 +33,29 @@ def test_what_is_known_is_believed_in_time_though_the_clock_was_set_back(back: f
     for k in range(round(3.0 * UNSEEN)):
         each.step(at + k, doubted=False)
     assert at <= each.believed.time <= at + 3.0 * UNSEEN
+
+
+@pytest.mark.parametrize("shift", [0.0, -3600.0, 3600.0])
+def test_what_was_known_a_while_ago_is_gone_back_to_whatever_became_of_the_clock(shift: float) -> None:
+    """Seconds of samples count: an hour that a clock was set by is no hour of learning."""
+    each = BeforeDoubt(Law())
+    for k in range(1500):
+        each.step(5000.0 + 0.1 * k + (shift if k >= 750 else 0.0), doubted=False)
+    newest = each.believed
+    each.go_back(0.0)
+    assert each.believed is newest
+    each.go_back(20.0)
+    assert 20.0 <= 149.9 - each.believed.at <= 20.0 + 3.0 * UNSEEN
+    each.go_back(WIRE_UNSEEN)
+    assert WIRE_UNSEEN <= 149.9 - each.believed.at <= WIRE_UNSEEN + 3.0 * UNSEEN
+    each.go_back()
+    assert each.believed.content == {"look": 1}
+    for k in range(150):
+        each.step(9000.0 + 0.1 * k, doubted=False)
+    each.begin()
+    begun = each.believed
+    each.go_back(0.0)
+    assert each.believed is begun
 
 
 def test_a_reading_of_another_time_does_not_make_the_first_one_too_fast() -> None:

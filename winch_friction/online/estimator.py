@@ -11,7 +11,7 @@ from winch_friction.estimation.answers import ParameterEstimate
 from winch_friction.estimation.interval import FrictionFunctions
 from winch_friction.estimation.sample import absent
 from winch_friction.online.agreement import DriveByItself
-from winch_friction.online.before_doubt import BeforeDoubt
+from winch_friction.online.before_doubt import WIRE_UNSEEN, BeforeDoubt
 from winch_friction.online.compensator import LEARNED_AT
 from winch_friction.online.doubt import LoadAgainstDrive, StandingReadings, WireAgainstSpeed, span
 from winch_friction.online.inertia_balance import InertiaBalance
@@ -64,6 +64,7 @@ class EstimatorService:
         self._still = StandingReadings(AGAINST_SPEED * crane.speed_scale)
         self._wire = WireAgainstSpeed(crane, self.inputs.ranges)
         self._drive = DriveByItself(crane, self.inputs.ranges)
+        self._taken_back = -math.inf  # s, of the doubt that stands
 
     def take(
         self, source: Input, message: Any, receipt: float, now: float, sent: float | None = None
@@ -118,13 +119,20 @@ class EstimatorService:
             gain = self._gain.contradiction(sample)
         if learned.accepted:
             self._slow = self._balance.contradiction(self.law.load_apart, sample) or gain
-        if (lost or self._slow) and not self.contradiction:
-            if self._gain.from_the_beginning:
-                self._before.go_back()
-            self.law.take_back(self._before.believed.content)
         self.contradiction = lost or self._slow
+        self._take_back(math.inf if self._gain.from_the_beginning else WIRE_UNSEEN if watched[2] else 0.0)
         self._before.step(sample.time, self._pending)
         self.law.set_enabled(self._enabled and not self.contradiction)
+
+    def _take_back(self, seconds: float) -> None:
+        """Forget what a doubt that stands has taught: of the last `seconds` s besides what was doubted already. Once a
+        doubt, and once more where another joins it that takes longer to show."""
+        if not self.contradiction:
+            self._taken_back = -math.inf
+        elif seconds > self._taken_back:
+            self._taken_back = seconds
+            self._before.go_back(seconds)
+            self.law.take_back(self._before.believed.content)
 
     def _expected(self, sample: Sample, speed: float) -> float:
         """The seed's friction of a sample at a speed, rad/s, in N m."""

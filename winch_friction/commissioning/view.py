@@ -13,6 +13,9 @@ BLOCK = 0.2  # s; shorter than any ramp of a winch, long enough to average an en
 MOST_BLOCKS = 600  # per run; evenly thinned beyond, so that a dozen runs are checked within a second
 BROKEN_SHARE = 0.02  # of a channel's samples beyond what a sensor can say: broken cells; more: a wrong unit
 SEEN_SHARE, LEAST_SHARE = 1.5, 0.3  # a winch tested at half its load errs by half; an empty hook's errors stay
+# a direction is certain among neighbours: of a wave of 4 s blocks of 0.8 s and more show each way too seldom for them.
+# Longer runs are thinned by stretches of 2 s, of which the inner blocks keep theirs
+SPARSE, STRETCH = 4, 10  # blocks
 MOVING = 0.03  # of the run's largest speed: slower blocks have no certain direction
 MOST_NUMBER = 1e12  # in any SI unit: channels without a limit of their own (a Unix time, a shaft angle) stay below
 WRAPS = 2.05 * np.pi  # rad; an angle that stays within one turn wraps around and tells no rate
@@ -261,7 +264,9 @@ def _slope(values: FloatArray, time: FloatArray) -> FloatArray:
 
 def _thinned(view: RunView) -> RunView:
     step = -(-len(view.time) // MOST_BLOCKS)
-    return view if step < 2 else select(view, slice(None, None, step))
+    if step < SPARSE:
+        return view if step < 2 else select(view, slice(None, None, step))
+    return select(view, np.arange(len(view.time)) // STRETCH % step == 0)
 
 
 def select(view: RunView, keep: slice | np.ndarray) -> RunView:

@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from winch_friction.discrepancy.candidates.gas import gas_candidates
+from winch_friction.discrepancy.candidates.creep import gas_candidates
 
 TIME = np.arange(0.0, 240.0, 0.1)  # s
 SWELL = 180e5 + 6e5 * np.sin(0.6 * TIME)  # Pa, of the calculated pressure

@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from winch_friction.discrepancy.candidates import families, feedback, friction, gas, geometry, signals
+from winch_friction.discrepancy.candidates import creep, families, feedback, friction, geometry, signals
 from winch_friction.discrepancy.candidates.candidate import ALL, BALANCING, Candidate, ParameterEstimate, Shape, Sides
 from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.physics.channels import GRAVITY
@@ -109,8 +109,8 @@ def driven(*others):
 
 def test_a_gas_is_looked_for_where_one_run_has_a_passive_side():
     one, two = driven(), driven(180e5 + 6e5 * np.cos(0.6 * np.arange(0.0, 60.0, 0.1)))
-    assert gas._no_passive_group([one, two]) is None
-    assert gas._no_passive_group([one, one]) is not None
+    assert creep._no_passive_group([one, two]) is None
+    assert creep._no_passive_group([one, one]) is not None
 
 
 @pytest.mark.parametrize(("share", "shows"), [(1.0, False), (0.55, False), (0.45, True), (0.0, True)])
@@ -118,7 +118,7 @@ def test_no_gas_presses_on_motors_that_carry_the_friction_of_the_others(share, s
     """Of 250 t on two groups of four motors on one line a tare that grew in each run had got a gas beside its name."""
     offset = 8e5  # Pa, of one line's transducer: a difference that stays tells nothing
     same = driven(130e5 + share * FRICTION_STEP + offset)
-    assert (gas._no_passive_group([same, same]) is None) is shows
+    assert (creep._no_passive_group([same, same]) is None) is shows
 
 
 # -- the displacement's feedback

@@ -36,11 +36,7 @@ class CompensatorConfig:
     reversal_speed: float = option(3.0, lower=1e-4, upper=200.0, unit="rad/s", doc="... and over at least this speed")
     jerk_filter: float = option(0.1, lower=0.0, upper=2.0, unit="s", doc="time constant of the extrapolation's jerk")
     acceleration_filter: float = option(
-        0.0,
-        lower=0.0,
-        upper=2.0,
-        unit="s",
-        doc="time constant of the acceleration; needs to be above 0 for measured speed",
+        0.0, lower=0.0, upper=2.0, unit="s", doc="time constant of the acceleration; above 0 for measured speed"
     )
     load: float = option(
         math.nan, lower=0.0, upper=1e7, unit="kg", may_be_nan=True,

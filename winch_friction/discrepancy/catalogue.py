@@ -27,11 +27,10 @@ from winch_friction.discrepancy.candidates.candidate import (
     label_of,
     own_group_shapes,
 )
-from winch_friction.discrepancy.candidates.creep import creeping_candidates
+from winch_friction.discrepancy.candidates.creep import creeping_candidates, gas_candidates
 from winch_friction.discrepancy.candidates.families import free_members, literature
 from winch_friction.discrepancy.candidates.feedback import bends_over, feedback_candidates
 from winch_friction.discrepancy.candidates.friction import friction_candidate, no_load, shipped_friction
-from winch_friction.discrepancy.candidates.gas import gas_candidates
 from winch_friction.discrepancy.candidates.geometry import geometry_candidates, layers_apart
 from winch_friction.discrepancy.candidates.signals import by_port, signal_candidates
 from winch_friction.discrepancy.engine import FloatArray

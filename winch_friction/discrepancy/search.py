@@ -14,8 +14,8 @@ import numpy as np
 
 from winch_friction.discrepancy.answer import MISSING, NOTHING, UNEXPLAINED, Effect, GapOptions, Verdict, decide
 from winch_friction.discrepancy.candidates.candidate import MOVING, REVERSALS, Candidate, Estimates, Shape, Untestable
+from winch_friction.discrepancy.candidates.creep import GAS
 from winch_friction.discrepancy.candidates.friction import blurred_travel
-from winch_friction.discrepancy.candidates.gas import GAS
 from winch_friction.discrepancy.candidates.signals import DELAY, SMALL, tau
 from winch_friction.discrepancy.catalogue import at_hand, testable
 from winch_friction.discrepancy.detectors import flow_balance

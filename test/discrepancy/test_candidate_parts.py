@@ -260,26 +260,26 @@ def test_a_warm_gas_presses_more_at_first_and_what_is_compressed_relaxes():
         pressure_sum=np.full(len(time), port + 4e5),
     )  # fmt: skip
     run = SimpleNamespace(groups=(ACTIVE, passive), time=time, dt=0.1)
-    warmth, heat = geometry.accumulator_columns(run, {"tau": 60.0}).T
+    warmth, heat = creep.accumulator_columns(run, {"tau": 60.0}).T
     assert 0.01 * warmth[0] == pytest.approx(-12.0)
     assert warmth[600] / warmth[0] == pytest.approx(np.exp(-1.0))
     assert not heat.any()  # nothing was compressed
     half = len(time) // 2
     passive.pressure_sum = passive.pressure_sum + 2.0 * port * (np.arange(len(time)) >= half)  # twice the pressure
-    heat = geometry.accumulator_columns(run, {"tau": 60.0})[:, 1]
+    heat = creep.accumulator_columns(run, {"tau": 60.0})[:, 1]
     assert not heat[:half].any()
     assert heat[-1] == pytest.approx(2.0 * 3e-5 * 2.0 * port * np.log(2.0) * (1.0 - np.exp(-200.0 / 60.0)), rel=1e-2)
-    slow = geometry.two_parts_columns(run, {"tau": 60.0})
+    slow = creep.two_parts_columns(run, {"tau": 60.0})
     assert slow.shape == (len(time), 3)
     assert slow[600, 2] / slow[0, 2] == pytest.approx(np.exp(-60.0 / 300.0))
-    assert not geometry.accumulator_columns(SimpleNamespace(groups=(ACTIVE,), time=time, dt=0.1), {"tau": 60.0}).any()
+    assert not creep.accumulator_columns(SimpleNamespace(groups=(ACTIVE,), time=time, dt=0.1), {"tau": 60.0}).any()
 
 
 def test_a_gas_becomes_corrections_of_the_passive_side_with_their_times():
     found = {name: ParameterEstimate(size, 1e-3, "1") for name, size in (("e_T", 0.01), ("e_S", 0.02), ("g_T", 0.5))}
     sides, shape = Sides(None, ("active",), ("passive",)), Shape("", {"tau": 30.0})
     told = {
-        each.name: (each.value, each.time_constant, each.groups) for each in geometry._to_two_parts(found, shape, sides)
+        each.name: (each.value, each.time_constant, each.groups) for each in creep._to_two_parts(found, shape, sides)
     }
     assert told == {
         "accumulator_warmth": (0.01, 30.0, ("passive",)), "accumulator_heat": (0.5, 30.0, ("passive",)),

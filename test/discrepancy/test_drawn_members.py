@@ -281,6 +281,21 @@ def test_every_curve_and_surface_has_a_name_of_its_own():
         names
     )
     assert {"free_tare_load", "free_tare_load_rising", "free_notch_loss_pressure_speed_magnitude"} < set(names)
+    assert {"free_stribeck_drum_torque_hoisting", "free_stribeck_drum_torque_lowering"} < set(names)
+
+
+def test_what_speed_changes_of_a_cause_of_load_or_stroke_is_drawn():
+    """A worm's flanks that push apart faster than they slide, a swash plate that tips: of speed as well, and with a
+    level of their own where it stands still. A loss of a gear that grows with speed is anybody's."""
+    found = {row.cause: row for row in module.SURFACES if SPEED in row.signals and len(row.signals) == 2}
+    assert not found["gear_asymmetry"].opposing
+    assert (found["gear_asymmetry"].shape, found["gear_asymmetry"].anchor) == ("rising", "low none")
+    stroke = found["low_displacement_loss"]
+    assert (stroke.shape, stroke.anchor, stroke.times) == ("falling rising", "high none", ("pressure",))
+    assert module.shapes_over("gear_load_loss", SPEED) == {"falling"}
+    assert (
+        module.shapes_over("gear_asymmetry", SPEED) == module.shapes_over("low_displacement_loss", SPEED) == {"rising"}
+    )
 
 
 def test_what_a_cause_may_look_like_is_said_for_each_of_its_signals():

@@ -111,7 +111,8 @@ def _by_load(cause: str, stem: str, x: str, **more: Any) -> list[Candidate]:
 def _of(cause: str, term: str, grid: Grid | None = None, **more: object) -> Candidate:
     member = friction_candidate(term_named(term), grid or {}, **{"law_name": term, "plausible": FAR, **more})
     if cause == "viscosity_temperature":  # the term is a difference and has no sign, but thick oil never drags less
-        member = replace(member, shapes=partial(_positive, member.shapes))
+        own = member.shapes
+        member = replace(member, shapes=lambda runs: [replace(shape, bounds=(0.0, FAR)) for shape in own(runs)])
     if (possible := POSSIBLE.get(cause)) is not None:
         member = replace(member, possible=possible, shapes=partial(_possible, possible, member.shapes))
     return replace(member, name=cause)
@@ -119,10 +120,6 @@ def _of(cause: str, term: str, grid: Grid | None = None, **more: object) -> Cand
 
 def _possible(possible: Possible, shapes: Shapes, runs: Sequence[PreparedRun]) -> list[Shape]:
     return [shape for shape in shapes(runs) if possible(shape.values, runs)]
-
-
-def _positive(shapes: Shapes, runs: Sequence[PreparedRun]) -> list[Shape]:
-    return [replace(shape, bounds=(0.0, FAR)) for shape in shapes(runs)]
 
 
 # -- free members
@@ -161,18 +158,21 @@ CURVES = (
     Free("case_pressure", ("pressure_sum",), (LEFT,), Scope.MOTOR, "convex_rising", "none"),
     Free("gear_asymmetry", (LOAD,), scope=Scope.SHAFT, opposing=False),
 )
+ONE_SIDE = ("hoisting", "lowering")
 STEADY = ("convex_rising", "rising")  # a length adds to what hangs, ever more or by steps, and takes nothing of it
 # more freedom, for what neither a law nor a curve explains: surfaces over two signals, and one way alone
 SURFACES = (
     Free("low_displacement_loss", (SWASH, PRESSURE), (), Scope.MOTOR, "falling rising", "high low"),
+    Free("low_displacement_loss", (SWASH, SPEED), (PRESSURE,), Scope.MOTOR, "falling rising", "high none"),
     Free("high_pressure_mixed", (PRESSURE, SPEED), (), Scope.MOTOR, "rising falling", "low none"),
     Free("notch_loss", (PRESSURE, SPEED), (SWASH,), Scope.MOTOR, "rising falling", "low high"),
     Free("notch_loss", (PRESSURE, SPEED), (), Scope.MOTOR, "rising falling", "low high"),
     Free("port_turbulence", (SPEED, SWASH), (), Scope.MOTOR, "convex_rising rising", "low low"),
     Free("churning", (SPEED, "oil_temperature"), (), Scope.SYSTEM, "convex_rising falling", "low none", needs=OIL),
-    Free("line_pressure_drop", (SPEED,), (SWASH,), Scope.MOTOR, "rising", "none", side="hoisting"),
-    Free("line_pressure_drop", (SPEED,), (SWASH,), Scope.MOTOR, "rising", "none", side="lowering"),
+    *(Free("line_pressure_drop", (SPEED,), (SWASH,), Scope.MOTOR, "rising", "none", side=each) for each in ONE_SIDE),
+    *(Free("stribeck", (SPEED,), (LOAD,), shape="falling", anchor="high", side=each) for each in ONE_SIDE),
     Free("gear_load_loss", (LOAD, SPEED), (), Scope.SYSTEM, "rising falling", "low none"),
+    Free("gear_asymmetry", (LOAD, SPEED), (), Scope.SHAFT, "rising", "low none", opposing=False),
     Free("sheave_bending", (LOAD, SPEED), (), Scope.SHAFT, "rising falling", "low none", presumes=("gear_load_loss",)),
     *(Free("tare_load", ("wire_out",), (), Scope.SHAFT, each, opposing=False, needs=HUNG) for each in STEADY),
 )

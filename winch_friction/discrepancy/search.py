@@ -114,7 +114,8 @@ def after_reversals(
     trials = candidate_trials(cross, base, named)
     if not trials:
         return None
-    p = flip_p_values(np.array([base.losses - each.losses for each in trials]), rng)
+    gains = np.array([base.losses - each.losses for each in trials])
+    p = flip_p_values(np.sign(gains) * np.sqrt(np.abs(gains)), rng)  # one long rest may weigh as much as all others
     best = min(range(len(trials)), key=lambda k: trials[k].loss)
     gain = cross.gain(base, trials[best])
     candidate, shape = trials[best].slots[-1].origin

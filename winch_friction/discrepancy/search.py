@@ -42,8 +42,7 @@ BY_LOAD = ("gear_load_loss", "sheave_bending")
 PRESSES = 0.5  # of the longest small delay: of a filter of 60 ms the first derivative told 33
 
 # -- just after reversals
-SIGNIFICANCE_AFTER_REVERSALS = 0.005
-FEWEST_BLOCKS = 200
+SIGNIFICANCE_AFTER_REVERSALS, FEWEST_BLOCKS = 0.005, 200
 
 
 @dataclass(frozen=True)

@@ -170,8 +170,8 @@ def test_a_zero_error_of_the_speed_is_told_though_the_wire_comes_and_goes_as_far
 
 
 @pytest.mark.parametrize("haul", [-60.0, -20.0, 0.0, 40.0])
-@pytest.mark.parametrize("slip", [0.02, -0.04])
-def test_a_counter_that_slips_one_way_is_no_zero_error(haul, slip):
+@pytest.mark.parametrize(("slip", "speed"), [(0.02, 90.0), (-0.04, 90.0), (0.08, 400.0)])
+def test_a_counter_that_slips_one_way_is_no_zero_error(haul, slip, speed):
     lost = [0.0, 300.0]
 
     def slips(wire, _):
@@ -179,4 +179,4 @@ def test_a_counter_that_slips_one_way_is_no_zero_error(haul, slip):
         lost[1] = wire
         return wire + lost[0]
 
-    assert said(voyage(shown=slips, haul=haul, seconds=200.0))[0] == math.inf
+    assert said(voyage(shown=slips, haul=haul, speed=speed, seconds=100.0))[0] == math.inf

@@ -67,6 +67,21 @@ def test_every_cell_that_is_no_number_is_named_up_to_three_a_column(tmp_path):
     assert "57 more like it in this column" in found[3]
 
 
+def test_decimal_commas_are_told_once_for_a_file_with_what_reads_them(tmp_path):
+    """It was three lines for each column, and one more for each that then held no number."""
+    columns = 4
+    cells = {(line, column): f'"{line},{column}"' for line in range(2, 202) for column in range(columns)}
+    (found,) = problems_of(table(tmp_path / "run.csv", cells=cells))
+    assert found.count("'") == 8
+    assert "decimal comma in columns 'time [s]', " in found
+    assert " and 1 more (as '2,0', line 2); winch-friction import reads" in found
+    (found,) = problems_of(table(tmp_path / "run.csv", cells={(line, 3): f'"{line},5"' for line in range(2, 202)}))
+    assert "decimal comma in column '" in found
+    assert " more" not in found
+    found = problems_of(table(tmp_path / "run.csv", cells={(9, 1): '"1,5"', (10, 2): '"1,5"', (11, 2): '"1,5,5"'}))
+    assert [re.search(r"line (\d+)", each)[1] for each in found] == ["9", "10", "11"]
+
+
 def test_a_time_that_is_no_number_is_said_once(tmp_path):
     """A second line said of it that it is no time, with another advice."""
     (cell,) = problems_of(table(tmp_path / "run.csv", cells={(50, 0): "abc"}))

@@ -23,16 +23,17 @@ class Law:
         return None
 
 
-@pytest.mark.parametrize("back", [0.0, 3600.0])
-def test_what_is_known_is_believed_in_time_though_the_clock_was_set_back(back: float) -> None:
-    """After an hour's step back nothing newer was believed for an hour."""
+@pytest.mark.parametrize("step", [0.0, -3600.0, 3600.0, 20.0])
+def test_what_is_known_is_believed_after_as_many_seconds_of_samples(step: float) -> None:
+    """After an hour's step back nothing newer was believed for an hour; after one ahead, or a gap, what was learned a
+    tenth of a second before it was believed at once."""
     each = BeforeDoubt(Law())
-    for k in range(3):
-        each.step(5000.0 + k, doubted=False)
-    at = 5003.0 - back
-    for k in range(round(3.0 * UNSEEN)):
-        each.step(at + k, doubted=False)
-    assert at <= each.believed.time <= at + 3.0 * UNSEEN
+    for k in range(round(10.0 * UNSEEN)):
+        each.step(5000.0 + 0.1 * k + (step if k >= 3 else 0.0), doubted=False)
+        assert each.believed.content == {"look": 1}
+    for k in range(round(10.0 * UNSEEN), round(20.0 * UNSEEN)):
+        each.step(5000.0 + 0.1 * k + step, doubted=False)
+    assert each.believed.content == {"look": 2}
 
 
 @pytest.mark.parametrize("shift", [0.0, -3600.0, 3600.0])

@@ -54,6 +54,32 @@ def test_a_layer_that_is_never_believed_is_no_outer_one(said, state):
     assert fed.published[-1][1].state == state
 
 
+@pytest.mark.parametrize(("times", "end"), [(1, "active"), (2, "stale")])
+def test_one_stray_layer_does_not_stop_the_winch_for_good_and_a_sender_of_such_does(times, end):
+    """A single `7` of a drum of six layers, on a crane that never says its layer, stopped learning and feedforward for
+    ever; who says it again two seconds later is a sender, and once silent nobody knows the layer."""
+    fed, learning = Fed(QUICK), EstimatorService(CRANE, SEED, TOPICS)
+    fed.run(1.0)
+    source, stray = TOPICS.inputs["winch/wire_layer"], MESSAGES.make("std_msgs/msg/Float64", data=7.0)
+
+    def learns():
+        for topic, message in fed.messages(swell(fed.now)):
+            learning.take(TOPICS.inputs[topic], message, fed.now, fed.now)
+        return "wire_layer" not in learning.missing
+
+    for _ in range(times):
+        fed.hear(fed.service.take(source, stray, fed.now, fed.now))
+        learning.take(source, stray, fed.now, fed.now)
+        fed.run(2.0)
+        assert fed.published[-1][1].state == "stale"
+        assert not learns()
+    fed.run(27.0)
+    assert fed.published[-1][1].state == "stale"
+    fed.run(4.0)
+    assert fed.published[-1][1].state == end
+    assert learns() == (end == "active")
+
+
 def test_a_wire_that_does_not_stretch_has_no_length_to_lose():
     gate = EstimatorService(replace(CRANE, wire_stiffness=math.inf), SEED, TOPICS).inputs
     gate.fill(replace(swell(1000.0), wire_out=1500.0))

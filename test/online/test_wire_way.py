@@ -157,3 +157,26 @@ def test_coarse_steps_are_no_way_of_the_wire(step, hold):
 
 def test_fine_steps_tell():
     assert said(calm(steps(0.02, 25), share=2.0, seconds=60.0))[0] < 25.0
+
+
+@pytest.mark.parametrize(("speed", "off"), [(90.0, 20.0), (200.0, -25.0), (70.0, 18.0)])
+@pytest.mark.parametrize("haul", [0.0, -15.0])
+def test_a_zero_error_of_the_speed_is_told_though_the_wire_comes_and_goes_as_far(speed, off, haul):
+    """Of command and speed alike: it was never said, a parameter was published 5 of its sigmas off, and kept."""
+    first, words = said(voyage(lambda true, _: true + off, speed=speed, haul=haul))
+    assert first < 45.0
+    assert words.endswith("further one way than the wire: a zero error?")
+    assert said(voyage(lambda true, _: true + 0.08 * off, speed=speed, haul=haul))[0] == math.inf
+
+
+@pytest.mark.parametrize("haul", [-60.0, -20.0, 0.0, 40.0])
+@pytest.mark.parametrize(("slip", "speed"), [(0.02, 90.0), (-0.04, 90.0), (0.08, 400.0)])
+def test_a_counter_that_slips_one_way_is_no_zero_error(haul, slip, speed):
+    lost = [0.0, 300.0]
+
+    def slips(wire, _):
+        lost[0] += slip * max(wire - lost[1], 0.0)
+        lost[1] = wire
+        return wire + lost[0]
+
+    assert said(voyage(shown=slips, haul=haul, speed=speed, seconds=100.0))[0] == math.inf

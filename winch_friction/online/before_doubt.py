@@ -20,16 +20,18 @@ MOST_LOOKS = round(WIRE_UNSEEN / UNSEEN) + 2  # the one that is older than that,
 
 @dataclass(frozen=True)
 class Learned:
-    """What an estimator knew at `time` s, by the stamps, after `at` s of samples: its snapshot and its model."""
+    """What an estimator knew after `at` s of samples: its snapshot and its model."""
 
-    time: float
     at: float
     content: Mapping[str, Any]
     model: FrictionModel
 
 
 class BeforeDoubt:
-    """Looks at an estimator every `UNSEEN` s; what it knew is believed once as much time has passed without a doubt."""
+    """Looks at an estimator every `UNSEEN` s; what it knew is believed once as much time has passed without a doubt.
+
+    Its seconds are those of samples that followed each other: a clock that was set, or a gap, shows nothing.
+    """
 
     def __init__(self, law: FrictionEstimator) -> None:
         self._law = law
@@ -39,26 +41,31 @@ class BeforeDoubt:
 
     def begin(self) -> None:
         """Believe what the estimator knows now: the seed, or what a checkpoint held."""
-        self.believed = self._begun = self._look(math.nan)
+        self._begun = self._look()
         self._next: Learned | None = None
         self._earlier.clear()
+
+    @property
+    def believed(self) -> Learned:
+        """What is believed now."""
+        return self._earlier[-1] if self._earlier else self._begun
 
     def go_back(self, seconds: float = math.inf) -> None:
         """Believe what was known `seconds` s of samples ago, or at the beginning, and nothing since."""
         while self._earlier and self._earlier[-1].at > self._passed - seconds:
             self._earlier.pop()
-        self.believed, self._next = self._earlier[-1] if self._earlier else self._begun, None
+        self._next = None
 
     def step(self, time: float, doubted: bool) -> None:
         """One sample, stamped `time` s."""
         self._passed, self._time = self._passed + span(self._time, time), time
         if doubted:
             self._next = None
-        elif self._next is None or time < self._next.time:
-            self._next = self._look(time)
-        elif time - self._next.time >= UNSEEN:
-            self.believed, self._next = self._next, self._look(time)
-            self._earlier.append(self.believed)
+        elif self._next is None:
+            self._next = self._look()
+        elif self._passed - self._next.at >= UNSEEN:
+            self._earlier.append(self._next)
+            self._next = self._look()
 
-    def _look(self, time: float) -> Learned:
-        return Learned(time, self._passed, self._law.snapshot(), self._law.model())
+    def _look(self) -> Learned:
+        return Learned(self._passed, self._law.snapshot(), self._law.model())

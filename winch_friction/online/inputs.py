@@ -15,13 +15,7 @@ from winch_friction.physics.errors import check, option
 from winch_friction.physics.signals import ASSUMED, LOST, NAN, Run, Sample
 from winch_friction.physics.winch.crane import Crane
 from winch_friction.physics.winch.operating_point import ChannelRanges
-from winch_friction.records.sample_stream import (
-    SIMULTANEOUS,
-    InputHold,
-    Plausibility,
-    SampleStream,
-    group_columns,
-)
+from winch_friction.records.sample_stream import SIMULTANEOUS, InputHold, Plausibility, SampleStream, group_columns
 from winch_friction.records.topics import Input, TopicMap, stamp_time
 
 # -- how time is judged
@@ -69,6 +63,9 @@ class ServiceOptions:
 
 
 # -- all of them
+# s that a stray number leaves open what is assumed in its place, as the slowest input is held; s within which several
+# are one stray thing: whoever sends such a number later again is a sender, and may have died since
+STRAY, AT_ONCE = 30.0, 1.0
 SILENT = "motor_speed ('inputs' says why)"  # what is missing where no speed comes
 TWO_VOICES = "two values under one stamp"
 MOTION = "motor_speed", "speed_reference"
@@ -111,7 +108,7 @@ class InputGate:
         self._refusal = ""
         self._whole: Run | None = None  # at hand, each row of which shows all there is
         self._came: dict[str, float] = {}  # steady s at which a column's last held value arrived
-        self._unbelieved = set[str]()  # columns of which a number was refused
+        self._unbelieved: dict[str, tuple[float, float]] = {}  # steady s of refused numbers, the first and the last
         matters = {"wire_layer": len(crane.drum.layer_radii) > 1, "wire_out": math.isfinite(crane.wire_stiffness)}
         self._assumed = tuple(name for name in ASSUMED if matters.get(name, True))
         self._taking: tuple[tuple[str, ...], float] = ((), -math.inf)  # columns of the message at hand, its arrival
@@ -159,7 +156,8 @@ class InputGate:
         for column, value in source.decode(message).items():
             if refusal := self._plausible.refusal(column, stamp, value):
                 refusals.append(f"{column}: {refusal}")
-                self._unbelieved.update([column] if value == value else [])
+                if value == value:
+                    self._unbelieved[column] = self._unbelieved.get(column, (now, now))[0], now
             else:
                 self._came[column] = now
         return "; ".join(refusals)
@@ -192,7 +190,7 @@ class InputGate:
             self._refuse(arrivals, self._refusal)
         self.last_stamp, self.last_arrival = stamp, now
         self._without_stale(sample, now)
-        return self._with_lost(sample)
+        return self._with_lost(sample, now)
 
     def _without_stale(self, sample: Sample, now: float) -> None:
         """What arrived too long ago is lost: stamps alone do not tell an input's age where the speed comes late."""
@@ -204,12 +202,12 @@ class InputGate:
                 if owner is not None:
                     setattr(owner, channel, NAN)
 
-    def _with_lost(self, sample: Sample) -> Sample:
+    def _with_lost(self, sample: Sample, now: float) -> Sample:
         """The sample; what something is assumed for where it is absent, and that came, is lost in it, not absent."""
         for name in self._assumed:
-            if math.isnan(getattr(sample, name)) and (
-                name in self._unbelieved or math.isfinite(self.hold.stamp(name, sample.time))
-            ):
+            first, last = self._unbelieved.get(name, (NAN, NAN))
+            sent = last - first > AT_ONCE or abs(now - last) <= STRAY  # false for NaN
+            if math.isnan(getattr(sample, name)) and (sent or math.isfinite(self.hold.stamp(name, sample.time))):
                 setattr(sample, name, LOST)
         return sample
 
@@ -238,7 +236,7 @@ class InputGate:
         for group, member in sample.groups.items():
             self._strip(member, zip(group_columns(group), GROUP_CHANNELS, strict=True), sample.time)
         self.last_stamp, self.last_arrival = sample.time, sample.time if now is None else now
-        return self._with_lost(self.hold.fill(sample))
+        return self._with_lost(self.hold.fill(sample), self.last_arrival)
 
     def rows(self, run: Run) -> Iterator[Sample]:
         """What `fill` makes of a run's rows, one by one; nothing is held where the run is the first thing that comes

@@ -7,6 +7,7 @@ and no unit or direction can be told of them: the friction of one way was fed fo
 import math
 from collections import deque
 from dataclasses import dataclass, field
+from itertools import pairwise
 
 from winch_friction.physics.winch.crane import Crane
 
@@ -16,6 +17,10 @@ LEAST_SHOWN = 0.5  # m that a living counter comes and goes; a dead one wanders 
 LEAST_GONE = 1.0  # m, some steps of any counter
 # times that one may be the other: falls, a layer or a gear ratio that is not the crane's. Revolutions a minute are 9.5
 MOST_APART = 3.0
+# of all the way that the speed goes, either way: what it may go further one way than the wire. A counter slips by some
+# per cent, a layer that was just left is a fifteenth, and a filter makes a twentieth of a haul; a zero error goes on
+MOST_ASTRAY = 0.125
+LEAST_HALF = 0.25  # of that, in each half of the span: what is late goes ahead, and falls back again
 
 
 @dataclass
@@ -41,9 +46,31 @@ class WireWay:
             return ""
         wire = self._shown()
         gone = self._goes_on(time)
-        if wire < LEAST_SHOWN or gone < max(LEAST_GONE, MOST_APART * wire):
+        if wire < LEAST_SHOWN:
             return ""
-        return f"it goes on for {gone:.2g} m, where the wire comes and goes by {wire:.2g} m"
+        if gone >= max(LEAST_GONE, MOST_APART * wire):
+            return f"it goes on for {gone:.2g} m, where the wire comes and goes by {wire:.2g} m"
+        return self._astray()
+
+    def _astray(self) -> str:
+        """How far the speed goes one way where the wire, which follows it closely both ways, does not, or ''."""
+        ways, wires = ([b - a for a, b in pairwise(each[k] for each in self._seen)] for k in (1, 2))
+        way, wire, count = sum(ways), sum(wires), len(ways)
+        squares = sum(each * each for each in wires)
+        of_ways = sum(each * each for each in ways) - way * way / count  # about their means, m2
+        of_wires = squares - wire * wire / count
+        both = sum(a * b for a, b in zip(ways, wires, strict=True)) - way * wire / count
+        hoisted = sum(min(each, 0.0) ** 2 for each in wires)
+        if not EACH_WAY * squares <= hoisted <= (1.0 - EACH_WAY) * squares:
+            return ""
+        if not both > CLOSELY * math.sqrt(max(of_ways * of_wires, 0.0)) > 0.0:
+            return ""
+        times, half = math.sqrt(of_ways / of_wires), count // 2
+        early, late = (sum(ways[part]) - times * sum(wires[part]) for part in (slice(half), slice(half, None)))
+        goes_on = early * late > 0.0 and min(abs(early), abs(late)) > LEAST_HALF * abs(early + late)
+        if not goes_on or abs(early + late) < max(LEAST_GONE, MOST_ASTRAY * sum(map(abs, ways))):
+            return ""
+        return f"it goes {abs(early + late):.2g} m further one way than the wire: a zero error?"
 
     def _shown(self) -> float:
         """m that a living counter came and went by; 0 of one that stands by now, or whose steps are noise."""

@@ -16,6 +16,7 @@ from winch_friction.physics.errors import InputError, Problems
 from winch_friction.physics.signals import FloatArray, Run, column_unit
 from winch_friction.physics.winch.crane import Crane
 from winch_friction.records.atomic import atomic_path
+from winch_friction.records.decimal_comma import has_decimal_commas, refuse_decimal_commas
 from winch_friction.records.run_checks import Place, checked_run
 from winch_friction.records.unit_names import conversion_to_si
 
@@ -80,16 +81,18 @@ def read_csv_run(path: Path, crane: Crane | None = None, complete: bool = True) 
     if ragged:
         problems.say()
     place: Place = lambda row: f"line {table.lines[row]}"
-    columns, aside = {}, {}
+    columns, aside, commas = {}, {}, dict[str, str]()
     bare = [header.name for header in headers if header.known and not header.unit]
     for header, cells in zip(headers, table.columns, strict=True):
         if header.known:
-            numbers = _numbers(path, header, cells, place, problems)
+            numbers = _numbers(path, header, cells, place, problems, commas)
             columns[header.name] = numbers
             with problems:
                 columns[header.name] = header.to_si(numbers, str(path))
         else:
             aside[header.text] = cells.numbers_or_text()
+    if commas:
+        refuse_decimal_commas(path, commas, problems)
     with problems:
         run = checked_run(
             path.name, columns, place=place, crane=crane, complete=complete, aside=aside, bare=bare,
@@ -102,7 +105,7 @@ def read_csv_run(path: Path, crane: Crane | None = None, complete: bool = True) 
 def write_csv_run(run: Run, path: Path) -> Path:
     """Write a run atomically, SI units in the headers, every digit kept; metadata has no place in a CSV file."""
     content = {header_text(name): values for name, values in run.columns.items()} | dict(run.aside)
-    columns = [_written(np.asarray(values)) for values in content.values()]
+    columns = [["" if each != each else each for each in np.asarray(values).tolist()] for values in content.values()]
     with atomic_path(path) as temporary, temporary.open("w", newline="", encoding="utf-8") as stream:
         writer = csv.writer(stream, lineterminator="\n")
         writer.writerow(content)
@@ -256,10 +259,14 @@ def read_headers(path: Path, cells: Sequence[str], problems: Problems) -> list[H
     return headers
 
 
-def _numbers(path: Path, header: Header, cells: _Cells, place: Place, problems: Problems) -> FloatArray:
-    """A column's numbers; a cell that is none is gathered, and NaN."""
+def _numbers(
+    path: Path, header: Header, cells: _Cells, place: Place, problems: Problems, commas: dict[str, str]
+) -> FloatArray:
+    """A column's numbers; a cell that is none is gathered, and NaN. One of decimal commas is noted in `commas`."""
     numbers, bad = cells.numbers()
-    if bad:
+    if len(bad) > 1 and has_decimal_commas(bad, _number):
+        commas[header.text] = f"'{bad[0][1].strip()[:40]}', {place(bad[0][0])}"
+    elif bad:
         at = [f"{path}: {place(row)}, column '{header.text}': '{text.strip()[:40]}'" for row, text in bad[:_SHOWN]]
         foreign = len(bad) == len(numbers) or _number(bad[0][1].replace(",", ".")) is not None
         advice = "winch-friction import reads other ways of writing" if foreign else "leave the cell empty if unknown"
@@ -290,8 +297,3 @@ def _number(text: str) -> float | None:
         return None if "_" in text else float(text)
     except ValueError:
         return None
-
-
-def _written(values: Any) -> list[Any]:
-    """Plain values; NaN as an empty cell."""
-    return ["" if value != value else value for value in values.tolist()]

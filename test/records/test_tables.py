@@ -213,7 +213,10 @@ def test_an_empty_pressure_of_what_does_not_drive_is_no_obstacle(tmp_path, text,
 @pytest.mark.parametrize(
     ("text", "advice"),
     [
-        (TABLE.replace(",", ";").replace(";55;", ";55,5;"), "'55,5' is not a number; winch-friction import reads"),
+        (
+            TABLE.replace(",", ";").replace(";55;", ";55,5;"),
+            "column 'hook_load [t]' (as '55,5', line 2); winch-friction import",
+        ),
         ("time;motor_speed;motor_torque\n10:00:00;1;2\n10:00:01;1;2\n", "'10:00:00' is not a number; winch-friction"),
         (changed(3, "20,-60", "20,fast"), "'fast' is not a number; leave the cell empty if unknown"),
         (changed(4, "2000,", "2_000,"), "line 4, column 'time [ms]': '2_000' is not a number; write it without '_'"),

@@ -74,8 +74,10 @@ def heard(monkeypatch):
 
 @pytest.mark.parametrize("learn", [True, False])
 def test_what_is_learned_of_a_run_is_offered_unless_it_shall_not_be(learn, heard):
-    run = SimpleNamespace(name="r", time=np.array([7.0, 8.0]), groups=("main",), warnings=("w",))
-    found = replay_run(run, "crane", "seed", "settings", learn=learn)
+    run = SimpleNamespace(name="r", time=np.array([7.0, 7.9, 8.2, 10.1]), groups=("main",), warnings=("w",))
+    done = []
+    found = replay_run(run, "crane", "seed", "settings", learn=learn, told=done.append)
+    assert done == [1, 3]  # whole seconds from the first row on
     made = [each for each in heard if each[1] == "made"]
     assert [(kind, crane, seed, settings, begin) for kind, _, crane, seed, _, settings, begin in made] == [
         ("c", "crane", "seed", "settings", 7.0), ("e", "crane", "seed", "settings", 7.0),
@@ -86,7 +88,14 @@ def test_what_is_learned_of_a_run_is_offered_unless_it_shall_not_be(learn, heard
 
 
 def replayed_bag(
-    monkeypatch, tmp_path, settings=None, learn=True, recorded=(), inputs=(10.0, 12.0), of_bag="of the bag"
+    monkeypatch,
+    tmp_path,
+    settings=None,
+    learn=True,
+    recorded=(),
+    inputs=(10.0, 12.0),
+    of_bag="of the bag",
+    done=None,
 ):
     message = lambda stamp: SimpleNamespace(stamp=stamp, receipt=stamp + 0.5)
 
@@ -121,7 +130,9 @@ def replayed_bag(
     )
     path = tmp_path / "bag"
     path.mkdir(exist_ok=True)
-    found = replay_recording(path, "crane", "seed", settings, learn=learn, joint="j")
+    found = replay_recording(
+        path, "crane", "seed", settings, learn=learn, told=[].append if done is None else done.append, joint="j"
+    )
     assert opened == [(path, "crane", {"joint": "j"})]
     assert compared == [(path, {"compensator": "c steps of bag", "estimator": "e record of bag",
                                 "watchdog": "c watchdog of bag"}, {"crane": "crane", "joint": "j"})]  # fmt: skip
@@ -138,7 +149,9 @@ def test_settings_are_the_given_else_the_recordings_else_the_usual(given, of_bag
 
 
 def test_a_bag_is_replayed_from_its_first_input_by_both_and_compared(heard, monkeypatch, tmp_path):
-    found = replayed_bag(monkeypatch, tmp_path)
+    done = []
+    found = replayed_bag(monkeypatch, tmp_path, done=done)
+    assert done == [2]
     taken = [each for each in heard if each[1] == "take"]
     assert [each[:3] for each in taken] == [("c", "take", 10.0), ("e", "take", 10.0), ("c", "take", 12.0),
                                             ("e", "take", 12.0)]  # fmt: skip
@@ -146,8 +159,8 @@ def test_a_bag_is_replayed_from_its_first_input_by_both_and_compared(heard, monk
     assert heard[-1] == ("c", "offer", "learned 12.0")
     assert (found.live, found.warnings) == (("live",), ("spoilt", "of the bag"))
     heard.clear()
-    replayed_bag(monkeypatch, tmp_path, inputs=())
-    assert heard[0][-1] == -inf
+    replayed_bag(monkeypatch, tmp_path, inputs=(), done=done)
+    assert (heard[0][-1], done) == (-inf, [2])
 
 
 @pytest.mark.parametrize(
@@ -166,8 +179,8 @@ def test_a_file_is_read_by_its_crane_with_the_given_or_the_usual_settings(monkey
     monkeypatch.setattr(recording, "ReplaySettings", lambda: "usual")
     monkeypatch.setattr(recording, "replay_run", lambda *given, **named: (given, named))
     for given, used in ((None, "usual"), ("given", "given")):
-        assert replay_recording(path, "crane", "seed", given, learn=False) == (
-            (("r.csv", "crane"), "crane", "seed", used), {"learn": False},
+        assert replay_recording(path, "crane", "seed", given, learn=False, told=print) == (
+            (("r.csv", "crane"), "crane", "seed", used), {"learn": False, "told": print},
         )  # fmt: skip
     with pytest.raises(InputError, match=r"none.csv: no such file or folder"):
         replay_recording(tmp_path / "none.csv", "crane", "seed")

@@ -9,8 +9,8 @@ from typing import Annotated, Any
 import numpy as np
 import typer
 
-from winch_friction.cli.console import show_json, show_table, stderr
-from winch_friction.cli.inputs import show_warnings
+from winch_friction.cli.console import show_json, show_table
+from winch_friction.cli.inputs import bar_of_work, show_warnings
 from winch_friction.cli.names import complete_crane, complete_model
 from winch_friction.cli.optional import Namespace, OptionalPath, OptionalTexts, Overwrite
 from winch_friction.physics.channels import beside
@@ -94,11 +94,13 @@ def command(
     run = _run_of(recording, winch, options)
     forced = refuse_implausible([run], winch, seed, force, [recording]) if run is not None else {}
     settings = _settings_for(recording, run, settings)
-    with stderr.status("replaying"):
+    with bar_of_work() as bar:
+        task = bar.add_task("replaying, s", total=None if run is None else float(run.time[-1] - run.time[0]))
+        told = lambda seconds: bar.update(task, completed=seconds)
         if run is None or is_bag(recording):
-            result = replay_recording(recording, winch, seed, settings, learn=learn, **options)
+            result = replay_recording(recording, winch, seed, settings, learn=learn, told=told, **options)
         else:
-            result = replay_run(run, winch, seed, settings or ReplaySettings(), learn=learn)
+            result = replay_run(run, winch, seed, settings or ReplaySettings(), learn=learn, told=told)
     show_warnings(result.warnings)
     if out is not None:
         from winch_friction.replay.outputs import write_outputs

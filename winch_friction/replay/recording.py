@@ -1,6 +1,6 @@
 """A recording through both objects as the nodes took it: live equals replay."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from math import inf
 from pathlib import Path
@@ -22,7 +22,12 @@ from winch_friction.replay.settings import ReplaySettings, settings_from_metadat
 from winch_friction.replay.voices import CompensatorVoice, EstimatorVoice
 
 MODEL_TOPIC = "/friction_model"
+Told = Callable[[int], object]  # hears how many whole seconds of a recording are done: for a progress bar
 MUCH = 0.1  # of the samples; a start, and single lost messages, are less
+
+
+def _silent(seconds: int) -> None:
+    """Nobody listens."""
 
 
 @dataclass(frozen=True)
@@ -49,38 +54,49 @@ def replay_recording(
     settings: ReplaySettings | None = None,
     *,
     learn: bool = True,
+    told: Told = _silent,
     **bag_options: Any,
 ) -> Replayed:
     """Replay a bag or a run file through compensator and estimator.
 
     The compensator takes over the models recorded on `friction_model`; without any, and with `learn`, those that the
     estimator learns here, at the times at which the node would have published them. `settings` default to what the
-    recording says of itself, else to the nodes' defaults. `bag_options` go to `open_bag`. Raises `InputError`.
+    recording says of itself, else to the nodes' defaults. `told` hears each second that is done.
+    `bag_options` go to `open_bag`. Raises `InputError`.
     """
     path = Path(path)
     if not path.exists():
         raise InputError(f"{path}: no such file or folder")
     if is_bag(path):
-        return _replay_bag(path, crane, seed, settings, learn, bag_options)
-    return replay_run(read_run(path, crane), crane, seed, settings or ReplaySettings(), learn=learn)
+        return _replay_bag(path, crane, seed, settings, learn, told, bag_options)
+    return replay_run(read_run(path, crane), crane, seed, settings or ReplaySettings(), learn=learn, told=told)
 
 
 def replay_run(
-    run: Run, crane: Crane, seed: FrictionModel, settings: ReplaySettings, *, learn: bool = True
+    run: Run, crane: Crane, seed: FrictionModel, settings: ReplaySettings, *, learn: bool = True, told: Told = _silent
 ) -> Replayed:
-    """Replay a run; NaN entries are bridged up to the maximum ages, as in the nodes."""
+    """Replay a run; NaN entries are bridged up to the maximum ages, as in the nodes. `told` hears each second."""
     topics = TopicMap(groups=run.groups)
     begin = float(run.time[0])
     compensator = CompensatorVoice(crane, seed, topics, settings, begin)
     estimator = EstimatorVoice(crane, seed, topics, settings, begin)
-    for _, learned in zip(compensator.take_rows(run), estimator.take_rows(run), strict=True):
+    done = 0
+    for now, _, learned in zip(run.time, compensator.take_rows(run), estimator.take_rows(run), strict=True):
+        if now >= begin + done + 1:
+            told(done := int(now - begin))
         if learned is not None and learn:
             compensator.offer(learned)
     return _replayed(run.name, compensator, estimator, run.warnings)
 
 
 def _replay_bag(
-    path: Path, crane: Crane, seed: FrictionModel, settings: ReplaySettings | None, learn: bool, options: dict[str, Any]
+    path: Path,
+    crane: Crane,
+    seed: FrictionModel,
+    settings: ReplaySettings | None,
+    learn: bool,
+    told: Told,
+    options: dict[str, Any],
 ) -> Replayed:
     metadata, spoilt = bag_metadata(path)
     settings = settings or settings_from_metadata(metadata, str(path)) or ReplaySettings()
@@ -88,12 +104,14 @@ def _replay_bag(
         begin = next((each.stamp for each in bag.inputs()), -inf)
         compensator = CompensatorVoice(crane, seed, bag.topics, settings, begin)
         estimator, clock = EstimatorVoice(crane, seed, bag.topics, settings, begin), ReplayClock()
-        recorded = bag.topics_ending(MODEL_TOPIC)
+        recorded, done = bag.topics_ending(MODEL_TOPIC), 0
         for each in bag.events(*recorded):
             if isinstance(each, Other):
                 compensator.offer_text(each.message.data, each.topic)
                 continue
             now = clock.read(each.stamp, each.receipt)
+            if done + 1 <= each.stamp - begin < inf:
+                told(done := int(each.stamp - begin))
             compensator.take(each, now)
             learned = estimator.take(each, now)
             if learned is not None and learn and not recorded:

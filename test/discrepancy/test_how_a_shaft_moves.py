@@ -207,25 +207,6 @@ def test_what_creeps_after_a_reversal_counts_for_three_seconds_and_no_slower_tha
     assert motion.used[(TIME > 20.5) & (TIME < 22.9)].any() is np.bool_(used)
 
 
-@pytest.mark.parametrize("then", [0.0, 2.0, 0.2])
-def test_before_the_motion_ends_what_just_reversed_is_smeared_by_the_end(then):
-    """At -2 rad/s for a second until it stands, turns back or creeps on: half a window before it does."""
-    plan = np.select([TIME < 20.0, TIME < 21.0], [100.0 * np.minimum(20.0 - TIME, 1.0), -2.0], then)
-    motion, since = moved(plan, True), TIME - 20.0
-    half = motion.window // 2 * (TIME[1] - TIME[0])
-    assert motion.used[(since > 0.2) & (since < 1.0 - 2 * half - 0.12)].all()
-    assert not motion.used[(since > 1.0 - half + 0.05) & (since < 1.0)].any()
-
-
-def test_after_a_rest_a_whole_half_of_the_window_passes_before_anything_is_told():
-    """The friction of a shaft that stands is any up to its break-away, and smoothing brings it along."""
-    ramp = 20.0 * np.clip(TIME - 20.0, 0.0, 0.5) + np.where(TIME < 10.0, -100.0, 0.0)
-    motion, since = moved(ramp, True), TIME - 20.0
-    half = motion.window // 2 * (TIME[1] - TIME[0])
-    assert not motion.used[(since > -5.0) & (since < half - 0.01)].any()
-    assert motion.used[(since > half + 0.1) & (since < 0.5)].all()
-
-
 # -- what the motors' signals make
 def signals(count=3, digit=0.0, **more):
     own = {"pressure": 2e7, "pressure_sum": 2.4e7, "low_pressure": 2e6, "displacement": 2e-5, "logged": 2e7}

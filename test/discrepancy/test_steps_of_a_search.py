@@ -58,7 +58,7 @@ def reversing(
         asked.runs = [run.name for run in chosen]
 
     def flip(gains, rng):
-        assert gains == pytest.approx(np.sqrt([np.full(4, 0.0025), np.full(4, 1.5 * gone)]))
+        assert gains == pytest.approx(np.array([np.full(4, 0.0025), np.full(4, 1.5 * gone)]))
         return np.array([1e-9, p])
 
     monkeypatch.setattr(search, "expand_around", expand)

@@ -42,7 +42,8 @@ BY_LOAD = ("gear_load_loss", "sheave_bending")
 PRESSES = 0.5  # of the longest small delay: of a filter of 60 ms the first derivative told 33
 
 # -- just after reversals
-SIGNIFICANCE_AFTER_REVERSALS, FEWEST_BLOCKS = 0.005, 200
+SIGNIFICANCE_AFTER_REVERSALS = 0.005
+FEWEST_BLOCKS = 200
 
 
 @dataclass(frozen=True)
@@ -113,8 +114,7 @@ def after_reversals(
     trials = candidate_trials(cross, base, named)
     if not trials:
         return None
-    gains = np.array([base.losses - each.losses for each in trials])
-    p = flip_p_values(np.sign(gains) * np.sqrt(np.abs(gains)), rng)  # one long rest may weigh as much as all others
+    p = flip_p_values(np.array([base.losses - each.losses for each in trials]), rng)
     best = min(range(len(trials)), key=lambda k: trials[k].loss)
     gain = cross.gain(base, trials[best])
     candidate, shape = trials[best].slots[-1].origin

@@ -10,7 +10,6 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from scipy.integrate import cumulative_trapezoid
 from scipy.ndimage import binary_opening
 
 from winch_friction.discrepancy.preparation.grid import (
@@ -68,7 +67,7 @@ def motion_of(grid: Grid, crane: Crane, name: str, turning: bool) -> Motion:
     if not turning and at_one_speed(raw):
         return _steady(raw, grid, window)
     speed = smooth(raw, window)
-    angle = grid.columns.get("shaft_angle", cumulative_trapezoid(raw, dx=grid.dt, initial=0))
+    angle = grid.columns.get("shaft_angle", _travelled(raw, grid.dt))
     left = noise_level(raw) / np.sqrt(window / 3.0)  # of its noise, once smoothed
     guard = max(GUARD_SHARE * np.percentile(np.abs(speed), 99.5), GUARD_NOISE * left)
     if turning:
@@ -126,26 +125,27 @@ def _motor_speed(grid: Grid, crane: Crane, name: str) -> FloatArray:
     raise InputError(f"{name}: neither 'motor_speed' nor 'drum_speed' holds values; one of them is needed")
 
 
+def _travelled(speed: FloatArray, dt: float) -> FloatArray:
+    return np.concatenate([[0.0], np.cumsum(0.5 * (speed[1:] + speed[:-1])) * dt])
+
+
 def _just_reversed(
     angle: FloatArray, raw: FloatArray, speed: FloatArray, guard: float, dt: float, window: int
 ) -> tuple[FloatArray, FloatArray, np.ndarray]:
     """Direction, speed of the travel and the samples whose contact has begun to slide but not gone far."""
-    least, top = resolution(raw, dt), float(np.percentile(np.abs(speed), 99))
+    least = resolution(raw, dt)
     direction, travel, progress = travel_of(angle, least)
+    top = float(np.percentile(np.abs(speed), 99))
     turned = np.concatenate([[0], np.flatnonzero(np.diff(direction) != 0.0) + 1])
     samples = np.arange(len(angle))
-    last = np.searchsorted(turned[1:], samples, "right")
-    since = samples - turned[last]
-    half, quarter = window // 2, window // 4
-    stood = binary_opening(np.abs(speed) <= guard, np.ones(max(half, 1), bool))[np.maximum(turned - quarter, 0)]
-    ends = np.flatnonzero(direction * speed <= STANDS * guard)
-    ahead = np.append(ends, 2 * len(angle))[np.searchsorted(ends, samples)] - samples
+    since = samples - turned[np.searchsorted(turned[1:], samples, "right")]
     near = (travel > SURELY_GONE * least) & (travel < FAR_SHARE * top) & (since < FAR_TIME / dt)
-    # where the kernel reaches across a turn, what is measured is smeared, what is predicted is not: out of it are most
-    # of it after one, where alone a contact shows how it broke away, all of it after a rest, and more before the next
-    near &= (since > np.where(stood, half, quarter)[last]) & (ahead > half + GUARD_TIME / dt)
+    # sooner, most of the kernel reaches across the reversal: what is measured is smeared, what is predicted is not
+    near &= since > window // 4
     # the smoothed speed swings below zero before a start; then the angle has not moved on
-    return direction, direction * progress / dt, near & (progress / dt > STANDS * guard)
+    advances = np.minimum(direction * speed, progress / dt)
+    near &= (direction != 0.0) & (advances > STANDS * guard)
+    return direction, direction * progress / dt, near
 
 
 def resolution(raw_speed: FloatArray, dt: float) -> float:

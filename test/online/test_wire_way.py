@@ -180,3 +180,14 @@ def test_a_counter_that_slips_one_way_is_no_zero_error(haul, slip, speed):
         return wire + lost[0]
 
     assert said(voyage(shown=slips, haul=haul, speed=speed, seconds=100.0))[0] == math.inf
+
+
+@pytest.mark.parametrize(("astray", "told"), [(0.11, False), (0.14, True)])
+def test_an_eighth_of_all_the_way_is_more_than_a_counter_slips(astray, told):
+    """Of what the speed goes either way, in each second of waves of 8 s."""
+    own, gone, words = WireWay(), 0.0, ""
+    for k in range(60):
+        wave = math.sin(2.0 * math.pi * k / 8.0)
+        gone += wave
+        words = own.step(float(k), wave + astray * 2.0 / math.pi, gone)
+    assert bool(words) is told

@@ -75,8 +75,8 @@ class WireWay:
     def _shown(self) -> float:
         """m that a living counter came and went by; 0 of one that stands by now, or whose steps are noise."""
         shown = [each[2] for each in self._seen]
-        steps = [b - a for a, b in zip(shown, shown[1:], strict=False)]
-        follow = sum(a * b for a, b in zip(steps, steps[1:], strict=False))
+        steps = [b - a for a, b in pairwise(shown)]
+        follow = sum(a * b for a, b in pairwise(steps))
         return max(shown) - min(shown) if follow > 0.0 else 0.0
 
     def _goes_on(self, time: float) -> float:

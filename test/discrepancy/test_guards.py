@@ -225,7 +225,14 @@ def test_the_locked_runs_noise_has_no_delay_in_it_however_long():
     at = np.arange(600)
     skew = np.cos(at / 1.1)
     values = 5.0 * skew + 8.0 * np.gradient(skew) + noise()[:600]
-    found = _noise(values, skew, replace(crossfit(noise()).problem.blocks, run=0 * at, position=at), 0, 0.1)
+    found = _noise(
+        values,
+        skew,
+        replace(crossfit(noise()).problem.blocks, run=0 * at, position=at),
+        0,
+        0.1,
+        SimpleNamespace(made=None),
+    )
     assert found == pytest.approx(1.0, rel=0.2)
 
 

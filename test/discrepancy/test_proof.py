@@ -8,6 +8,7 @@ from scipy.stats import linregress
 
 from winch_friction.discrepancy import proof as module
 from winch_friction.discrepancy.engine.chance import Size
+from winch_friction.discrepancy.engine.coloured import Made
 from winch_friction.discrepancy.preparation.prepare import PreparedRun
 from winch_friction.discrepancy.proof import adds, drift_note, drive_of, leaves_too_much, worse_runs
 from winch_friction.discrepancy.thresholds import LIMITS
@@ -238,6 +239,7 @@ def test_a_gap_after_is_read_at_the_times_of_the_gap_before_and_in_bar_of_its_ow
     old = SimpleNamespace(
         time=np.arange(4.0), start=100.0, used=np.ones(4, bool), gap=np.full(4, 50.0), unit_torque=10.0,
         direction=np.array([1.0, 1.0, -1.0, -1.0]), channels={"load": np.arange(4.0)},
+        made=lambda size: Made(size, (4.0,)),
     )  # fmt: skip
     at = np.array(at)
     new = SimpleNamespace(
@@ -246,6 +248,7 @@ def test_a_gap_after_is_read_at_the_times_of_the_gap_before_and_in_bar_of_its_ow
     )  # fmt: skip
     found = module._blocks(old, new, 2.0)
     assert found.position.tolist() == at.astype(int).tolist()
+    assert found.made == Made(1, (4.0,))
     assert found.y == pytest.approx(np.full(len(at), 5.0))
     assert found.x == pytest.approx(np.column_stack([at, np.full(len(at), 3.0)]))
     assert found.features["load"] == pytest.approx(at)
@@ -317,9 +320,9 @@ def test_two_models_are_compared_over_the_runs_that_were_asked(monkeypatch):
     )
     tables, asked = [], []
 
-    def noise_of(values, skew, _, k, least):
+    def noise_of(values, skew, _, k, least, table):
         asked.append((values.tolist(), skew.tolist()))
-        return noise[k] * (least == k + 1)
+        return noise[k] * (least == k + 1) * (table is tables[k])
 
     monkeypatch.setattr(module, "_blocks", lambda old, new, length: (old.name + old.of, new.name + new.of, length))
     monkeypatch.setattr(module, "joined", lambda own, weights: tables.extend(own) or (blocks if weights else None))
@@ -348,13 +351,15 @@ def test_noise_is_what_neither_a_late_signal_nor_its_change_leaves(monkeypatch):
     monkeypatch.setattr(module, "noise_of_run", lambda *each: asked.append(each) or 7.0)
     blocks = SimpleNamespace(run=np.array([0, 1, 1, 1]), position=np.array([5, 1, 2, 4]))
     values, skew = np.array([9.0, 1.0, 2.0, 3.0]), np.array([4.0, 0.0, 1.0, 4.0])
-    assert module._noise(values, skew, blocks, 1, 0.5) == 7.0
-    own, position, least, late = asked[0]
+    table = SimpleNamespace(made=Made(1, (1.0,)))
+    assert module._noise(values, skew, blocks, 1, 0.5, table) == 7.0
+    own, position, least, late, made = asked[0]
+    assert made is table.made
     assert (own.tolist(), position.tolist(), least) == ([1.0, 2.0, 3.0], [1, 2, 4], 0.5)
     assert late.tolist() == [[0.0, 1.0], [1.0, 2.0], [4.0, 3.0]]
-    assert module._noise(values, skew, blocks, 0, 0.5) == 7.0
+    assert module._noise(values, skew, blocks, 0, 0.5, table) == 7.0
     assert asked[1][3].tolist() == [4.0]
-    assert module._noise(values, skew, blocks, 2, 0.5) == 0.0
+    assert module._noise(values, skew, blocks, 2, 0.5, table) == 0.0
 
 
 def test_the_loss_of_a_run_is_the_median_of_what_is_left_along_its_motion():
@@ -381,7 +386,7 @@ def test_a_gap_is_compared_where_either_model_leaves_a_sample_in_the_regime(monk
     monkeypatch.setattr(module, "timing_column", lambda run: np.zeros(len(run.time)))
     first = SimpleNamespace(
         time=np.arange(4.0), start=5.0, used=np.array(old, bool), gap=np.ones(4), unit_torque=1.0,
-        direction=np.ones(4), channels={},
+        direction=np.ones(4), channels={}, made=lambda size: None,
     )  # fmt: skip
     second = SimpleNamespace(
         time=np.arange(4.0), start=5.0, gap=np.ones(4), unit_torque=1.0,

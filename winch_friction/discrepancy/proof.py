@@ -208,7 +208,7 @@ def beside(before: Given, after: Given, names: Sequence[str]) -> Side:
     blocks = joined(tables, dict.fromkeys(range(len(pairs)), 1.0))
     y_before, y_after, skew = blocks.y, *blocks.x.T
     least = np.array([least_noise_of(old) for old, _ in pairs])
-    noise = np.array([_noise(y_after, skew, blocks, k, least[k]) for k in range(len(pairs))])
+    noise = np.array([_noise(y_after, skew, blocks, k, least[k], t) for k, t in enumerate(tables)])
     floor, closes = (rms(each[blocks.run]) if len(pairs) else 0.0 for each in (noise, least))
     torque, untold = np.array([drive_of(old) for old, _ in pairs])[blocks.run], Size(np.nan, (np.nan, np.nan))
     return Side(
@@ -227,17 +227,17 @@ def _blocks(old: PreparedRun, new: PreparedRun, length: float) -> RunBlocks:
     gap = np.interp(at, own, new.gap) / new.unit_torque
     columns = (np.column_stack([gap, timing_column(old) / old.unit_torque]),)
     own_gap, size = old.gap / old.unit_torque, block_size(old)
-    return run_blocks(old.time, own_gap, columns, used, old.direction, old.channels, size, length)
+    return run_blocks(old.time, own_gap, columns, used, old.direction, old.channels, size, length, made=old.made(size))
 
 
-def _noise(values: FloatArray, skew: FloatArray, blocks: Blocks, k: int, least: float) -> float:
+def _noise(values: FloatArray, skew: FloatArray, blocks: Blocks, k: int, least: float, of: RunBlocks) -> float:
     """Independent noise of one run, in the gap's unit."""
     own = blocks.run == k
     if not own.any():
         return 0.0
     # what is late by more than a little leaves the skew's own change as well
     late = np.column_stack([skew[own], np.gradient(skew[own])]) if own.sum() > 1 else skew[own]
-    return noise_of_run(values[own], blocks.position[own], least, late)
+    return noise_of_run(values[own], blocks.position[own], least, late, of.made)
 
 
 def drive_of(run: PreparedRun) -> float:

@@ -263,7 +263,7 @@ def build_problem(
 def _blocks(run: PreparedRun, layout: Layout, size: int, length: float, into: FloatArray, keep: bool) -> RunBlocks:
     table = run_blocks(
         run.time, run.gap / run.unit_torque, regressors(run, layout, size), run.used, run.direction, run.channels,
-        size, length, into,
+        size, length, into, run.made(size),
     )  # fmt: skip
     weighed = "hook_load" in run.present or not (run.groups or COURSE in run.present)
     first = weighed and not run.means  # who holds these runs holds the table as well, and nobody changes it

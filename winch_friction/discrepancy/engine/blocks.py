@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from winch_friction.discrepancy.engine import FloatArray
+from winch_friction.discrepancy.engine.coloured import Made
 from winch_friction.discrepancy.thresholds import LIMITS
 
 AT_ONCE = 8  # columns, 12 MB over an hour at 50 Hz
@@ -48,7 +49,8 @@ class Means:
 
 @dataclass(frozen=True)
 class RunBlocks:
-    """The blocks of one record; `position` is the block's number on the record's own grid."""
+    """The blocks of one record; `position` is the block's number on the record's own grid, `made` says how,
+    where a log is so slow that neighbours share samples."""
 
     y: FloatArray
     x: FloatArray
@@ -56,6 +58,7 @@ class RunBlocks:
     position: np.ndarray
     features: dict[str, FloatArray]
     direction: FloatArray
+    made: Made | None = None
 
 
 @dataclass(frozen=True)
@@ -132,6 +135,7 @@ def segment_length(total: float) -> float:
 def run_blocks(
     time: FloatArray, gap: FloatArray, columns: Iterable[FloatArray | Means], mask: np.ndarray, direction: FloatArray,
     features: Mapping[str, FloatArray], size: int, length: float, into: FloatArray | None = None,
+    made: Made | None = None,
 ) -> RunBlocks:  # fmt: skip
     """Means over blocks of `size` samples, of the masked ones; segments are `length` seconds long.
 
@@ -155,6 +159,7 @@ def run_blocks(
         position=np.flatnonzero(keep),
         features=means,
         direction=np.sign(means_of(direction)),
+        made=made,
     )
 
 

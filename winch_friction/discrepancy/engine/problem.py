@@ -15,6 +15,7 @@ from scipy.special import gammaincinv
 
 from winch_friction.discrepancy.engine import FloatArray
 from winch_friction.discrepancy.engine.blocks import Blocks, Grams, RunBlocks, Slot, grams, joined
+from winch_friction.discrepancy.engine.coloured import Made, seen_of
 from winch_friction.discrepancy.thresholds import LIMITS
 
 # -- the noise of a record
@@ -22,12 +23,14 @@ NOT_ZERO = 1e-300  # against a division by nothing, where nothing moves
 
 
 def noise_of_run(
-    values: FloatArray, position: np.ndarray, least: float = LIMITS.least_noise, skew: FloatArray | None = None
-) -> float:
+    values: FloatArray, position: np.ndarray, least: float = LIMITS.least_noise, skew: FloatArray | None = None,
+    made: Made | None = None,
+) -> float:  # fmt: skip
     """Standard deviation of the block noise, same unit as `values`; `position` numbers the blocks on their grid.
 
     A hundredth of what no balance closes better than, `least`, is as good as noise-free. `skew`, one column
     or several, is what signals out of step leave in the values: in a quick sea it turns within the windows, no noise.
+    How blocks are `made` that share samples tells what the windows do not see of it.
     """
     floor = LIMITS.noise_floor * least
     window, order = LIMITS.noise_window, LIMITS.noise_order
@@ -46,7 +49,8 @@ def noise_of_run(
     variances = (quick**2).sum(axis=1) / freedom
     # that quantile of chi-squared, per degree of freedom
     expected = 2.0 * gammaincinv(0.5 * freedom, LIMITS.noise_quiet) / freedom
-    return max(float(np.sqrt(np.quantile(variances, LIMITS.noise_quiet) / expected)), floor)
+    quiet = float(np.sqrt(np.quantile(variances, LIMITS.noise_quiet) / expected))
+    return max(quiet / seen_of(quick, projector, made), floor)
 
 
 def _windows(values: FloatArray, position: np.ndarray, window: int) -> FloatArray:
@@ -254,7 +258,7 @@ def problem_of(
     """Gram matrices of these records; what candidates that are `known` already explain is not taken for noise. `x`: the
     columns of all records, where these stand together."""
     skews = [None if layout.base.skew is None else t.x[:, layout.base.skew] for t in tables]
-    noise = {k: noise_of_run(t.y, t.position, float(least_noise[k]), skews[k]) for k, t in enumerate(tables)}
+    noise = {k: noise_of_run(t.y, t.position, float(least_noise[k]), skews[k], t.made) for k, t in enumerate(tables)}
     blocks = joined(tables, noise, x)
     first = Problem(layout, blocks, grams(blocks), noise)
     # once more without what the base's own freedom explains, such as half a sample of skew while the oil column rings
@@ -262,7 +266,7 @@ def problem_of(
     beta = first.fit(*first.grams.total(), first.columns(known))
     left = [t.y - np.ascontiguousarray(t.x[:, columns]) @ beta for t in tables]
     again = {
-        k: min(noise[k], noise_of_run(left[k], t.position, float(least_noise[k]), skews[k]))
+        k: min(noise[k], noise_of_run(left[k], t.position, float(least_noise[k]), skews[k], t.made))
         for k, t in enumerate(tables)
     }
     return replace(_reweighted(first, again), least_noise=least_noise)

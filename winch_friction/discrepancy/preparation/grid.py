@@ -128,6 +128,14 @@ def smooth_between_steps(values: FloatArray, window: int, widest: int) -> FloatA
     return found
 
 
+SIMPSON = np.array([1.0, 4.0, 1.0]) / 6.0  # the mean over two periods that a slow log's torque is
+
+
+def smoothing_of(window: int) -> FloatArray:
+    """The weights of `smooth` inside a record, symmetric, (window,)."""
+    return _weights(window | 1, min(2, window - 1))[0]
+
+
 @lru_cache(maxsize=256)
 def _weights(window: int, order: int) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Of a parabola through the samples around one, and at both ends: `savgol_filter` makes them at each call."""

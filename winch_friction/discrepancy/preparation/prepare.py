@@ -8,8 +8,9 @@ from typing import Any
 import numpy as np
 from scipy.ndimage import binary_opening, maximum_filter1d
 
+from winch_friction.discrepancy.engine.coloured import Made
 from winch_friction.discrepancy.preparation.balance import SHOWS, SPARSEST, Accounted, Balance, Balancing, Groups
-from winch_friction.discrepancy.preparation.grid import Grid, spikes_of
+from winch_friction.discrepancy.preparation.grid import SIMPSON, Grid, smoothing_of, spikes_of
 from winch_friction.discrepancy.preparation.seen import GroupSignals, Motion, Seen, see, shared
 from winch_friction.discrepancy.preparation.suspended_load import (
     FEWEST_MOVING,
@@ -89,6 +90,7 @@ class PreparedRun:
     present: frozenset[str]  # columns that the file had; `hook_load` also where a measured force stands for it
     channels: Mapping[str, FloatArray]  # what a gap may depend on, for locating it
     seen: Seen | None = None  # for preparing the same run once more; None where nobody will
+    window: int = 1  # samples that speed and torque were smoothed over
     # means of columns over its blocks, for whoever asks for the same ones again; of this very run, and of no copy
     means: dict[Hashable, Any] = field(default_factory=dict, init=False, repr=False, compare=False)
 
@@ -107,6 +109,13 @@ class PreparedRun:
         """Partial derivatives of the model's torque by its parameters, N m per unit, shape (samples, parameters): a
         third of all that a run would hold, for one who asks once."""
         return self.model.jacobian(self.point, self.states)
+
+    def made(self, size: int) -> Made | None:
+        """How a block of `size` samples is made of those of a log so slow that neighbours share some."""
+        if self.dt <= SPARSEST:  # four samples and more make a block: its noise is as good as white
+            return None
+        sample = np.convolve(smoothing_of(self.window), SIMPSON)
+        return Made(size, tuple(np.convolve(sample, np.full(size, 1.0 / size)).tolist()))
 
     @cached_property
     def load_friction(self) -> FloatArray:
@@ -195,6 +204,7 @@ def prepare(
         used=used & grid.valid & ~spikes & hanging.on_one_layer(motion.angle, crane.gear_ratio),
         spikes=spikes, present=frozenset(run.columns) | ({"hook_load"} if hanging.tension_measured else set()),
         channels=channels_of(run, grid, motion, hanging, balance.groups, crane), seen=seen,
+        window=motion.window,
     )  # fmt: skip
     return prepared if before is None else prepared.sharing(before)
 

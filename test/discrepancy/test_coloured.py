@@ -1,0 +1,74 @@
+"""The noise of a slow log, whose blocks share samples and whose sensors may be slower than a sample."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from scipy.signal import lfilter
+
+from winch_friction.discrepancy.engine import coloured
+from winch_friction.discrepancy.engine.coloured import Made, seen_of
+from winch_friction.discrepancy.engine.problem import noise_of_run
+from winch_friction.discrepancy.preparation.grid import smooth
+from winch_friction.discrepancy.preparation.prepare import PreparedRun
+
+AFTER_SIMPSON = (1.0 / 6.0, 4.0 / 6.0, 1.0 / 6.0)
+
+
+def of(correlation, count, seed=1):
+    white = np.random.default_rng(seed).standard_normal(count + 50)
+    return lfilter([np.sqrt(1.0 - correlation**2)], [1.0, -correlation], white)[50:]
+
+
+def noise_of(values, made=None):
+    return noise_of_run(values, np.arange(len(values)), made=made)
+
+
+def made_of(dt, size, window=3):
+    return PreparedRun.made(SimpleNamespace(dt=dt, window=window), size)
+
+
+@pytest.mark.parametrize("window", [3, 5])
+@pytest.mark.parametrize("correlation", [0.0, 0.3, 0.51])
+def test_the_noise_of_a_slow_log_is_told_whole(correlation, window):
+    """A pressure with a filter of 0.3 s, logged every 0.2 s, has 0.51 from sample to sample; taken for white a half of
+    what is left of it behind both means was lost, and a quarter of a white one."""
+    values = 0.3 * np.convolve(smooth(of(correlation, 12_000), window), AFTER_SIMPSON, "valid")
+    assert noise_of(values, made_of(0.2, 1, window)) == pytest.approx(np.std(values), rel=0.1)
+    assert noise_of(values) < 0.86 * np.std(values)
+
+
+def test_so_it_is_of_two_samples_to_a_block():
+    values = np.convolve(of(0.3, 24_002), AFTER_SIMPSON, "valid").reshape(-1, 2).mean(axis=1)
+    assert noise_of(values, made_of(0.1, 2)) == pytest.approx(np.std(values), rel=0.05)
+
+
+def test_a_quicker_log_is_left_as_it_was():
+    assert made_of(0.055, 4) is None
+    assert made_of(0.056, 4).samples == 4
+    assert seen_of(np.ones((40, 12)), np.eye(12), None) == 1.0
+
+
+def test_how_a_block_is_made_adds_up_to_a_mean():
+    assert made_of(0.2, 1).weights == pytest.approx(
+        (0.0, *AFTER_SIMPSON, 0.0)
+    )  # three samples are no parabola's to smooth
+    assert len(made_of(0.1, 2, 5).weights) == 8
+    assert sum(made_of(0.1, 2, 5).weights) == pytest.approx(1.0)
+
+
+def test_what_an_effect_does_in_a_sixth_of_the_time_is_no_colour():
+    """After every other reversal it makes a hump; the quiet windows tell."""
+    count = 6000
+    noise = np.convolve(of(0.0, count + 2), AFTER_SIMPSON, "valid")
+    humps = np.where(np.arange(count) % 120 < 20, 6.0 * np.sin(np.arange(count) / 2.0), 0.0)
+    assert noise_of(noise + humps, made_of(0.2, 1)) == pytest.approx(np.std(noise), rel=0.15)
+
+
+def test_few_windows_tell_the_weights_share_alone():
+    projector = np.eye(12) - 1.0 / 12.0
+    values = np.convolve(of(0.55, 400), AFTER_SIMPSON, "valid")
+    many = np.lib.stride_tricks.sliding_window_view(values, 12)[::6] @ projector
+    few = many[: coloured.FEWEST_WINDOWS - 1]
+    assert seen_of(many, projector, made_of(0.2, 1)) < seen_of(few, projector, made_of(0.2, 1)) < 1.0
+    assert seen_of(few, projector, Made(1, (1.0,))) == pytest.approx(1.0)

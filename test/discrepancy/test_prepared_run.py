@@ -91,7 +91,7 @@ def prepared(monkeypatch, mode=None, spikes=None, tension=False, wire=0.0, **mas
              **masks}  # fmt: skip
     ones, asked = np.ones(SIZE), {}
     motion = SimpleNamespace(
-        used=whole["moving"], speed=2.0 * ones, acceleration=3.0 * ones, direction=ones, angle=400.0 * TIME
+        window=5, used=whole["moving"], speed=2.0 * ones, acceleration=3.0 * ones, direction=ones, angle=400.0 * TIME
     )
     hanging = SimpleNamespace(
         mass=np.where(TIME < 1.0, 9e4, 4e4), tension_measured=tension, acceleration=0.1 * ones, radius=ones,

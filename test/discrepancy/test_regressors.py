@@ -297,12 +297,12 @@ def test_what_a_weight_could_explain_is_taken_out_where_nobody_weighed_a_hydraul
     monkeypatch, present, groups, column
 ):
     taken = []
-    monkeypatch.setattr(module, "run_blocks", lambda *_: "table")
+    monkeypatch.setattr(module, "run_blocks", lambda *each: "table" * (each[-1] == "made"))
     monkeypatch.setattr(module, "regressors", lambda *_: ())
     monkeypatch.setattr(module, "without_column", lambda table, at: taken.append((table, at)) or "less")
     run = SimpleNamespace(
         time=None, gap=np.ones(1), unit_torque=2.0, used=None, direction=None, channels=None, present=present,
-        groups=("main",) * groups, means={},
+        groups=("main",) * groups, means={}, made=lambda size: "made",
     )  # fmt: skip
     layout = SimpleNamespace(base=BASE, slots=())
     found = module._blocks(run, layout, 1, 1.0, np.empty((2, 1)), False)

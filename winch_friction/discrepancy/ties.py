@@ -64,7 +64,8 @@ class Tie:
     second: Member
     why: str
     separates: str
-    product: bool = False  # only the product shows, whatever the runs
+    last: bool = False  # takes no room from another name: it does the same on any runs, or is no effect of the winch
+    likely: float = 0.0  # size up to which the second is common: then it does as well where it closes nearly as much
 
 
 _BOTH_PORTS = "T = D dp: a gain of either scales the drive torque; only the friction's own dependence on D differs"
@@ -79,7 +80,14 @@ TIES = (
     ),
     Tie(
         Member("layer_radius", "all layers"), Member("load_scale"), "load torque = m g R: only the product shows",
-        "a weighed load, or drum turns against metres of wire", product=True,
+        "a weighed load, or drum turns against metres of wire", last=True,
+    ),
+    *(
+        Tie(
+            Member(name), Member("load_scale"), "a load cell that is off by one share of its load in all runs does it too",
+            "a weighed load, or a second load cell", last=True, likely=LIMITS.most_level,
+        )
+        for name in ("layer_radius", "pressure_scale", "gear_asymmetry")
     ),
     Tie(
         Member("gear_load_loss"), Member("sheave_bending"), "both take a constant share of the load's torque",
@@ -209,12 +217,18 @@ def company(search: Search, found: Finding) -> Company:
     losses = {slot.name: trial.loss for slot, trial in zip(found.rivals, trials, strict=False)}
     partners = []
     for trial, (k, tie) in zip(trials[m - 1 :], pairs.values(), strict=True):
-        if does_as_well(trial, first, without, np.random.default_rng(0)):
-            losses[tie.second.name] = float("inf") if tie.product else trial.loss
-            partners.append(_partner(tie, cross, (first, *trials)[k], trial))
+        partner = _partner(tie, cross, (first, *trials)[k], trial)
+        common = abs(partner.size.value) <= tie.likely and _closes_nearly_as_much(trial, first, without)
+        if common or does_as_well(trial, first, without, np.random.default_rng(0)):
+            losses[tie.second.name] = float("inf") if tie.last else trial.loss
+            partners.append(partner)
     best = sorted(losses, key=lambda name: losses[name])[: LIMITS.most_names - 1]
     no_room = (*(name for name in losses if name not in best), *found.no_room)
     return Company(tuple(best), tuple(each for each in partners if each.name in best), no_room)
+
+
+def _closes_nearly_as_much(trial: Explanation, first: Explanation, without: Explanation) -> bool:
+    return without.loss - trial.loss >= (1.0 - LIMITS.left_over) * (without.loss - first.loss)
 
 
 def _shape_of(candidate: Candidate, member: Member, runs: Sequence[PreparedRun]) -> Shape:

@@ -2,7 +2,6 @@
 
 import json
 from collections import Counter
-from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -26,6 +25,7 @@ RATE = 50.0  # Hz
 AS_FAST_AS_IT_GOES = 1000.0  # simulated seconds per second
 LOOP_TIME, SETTLED = 25.0, 12.0  # s of each sea in the loop, and when its start is over
 MOVING = 10.0  # rad/s
+TRIES = 3  # recordings, as of every test with live nodes
 START, DAY = 1_706_745_600.0, 86400.0  # s
 
 
@@ -73,8 +73,17 @@ class Product:
 
 
 @pytest.fixture(scope="module")
-def product(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Product]:
-    folder = tmp_path_factory.mktemp("product")
+def product(tmp_path_factory: pytest.TempPathFactory) -> Product:
+    """All tests read one recording: where the machine stood still and a message was lost, the second try is made here,
+    for a test that is tried again would read the same bags. A defect loses one three times."""
+    for _ in range(TRIES):
+        made = _made(tmp_path_factory.mktemp("product"))
+        if all(_held(log) == log.expected for log in (*made.logs, made.loop)):
+            break
+    return made
+
+
+def _made(folder: Path) -> Product:
     bench = Bench(folder)
     try:
         cycles, seas = _start(bench, folder, "cycles", "main"), _start(bench, folder, "simulator", "active", "passive")
@@ -83,7 +92,7 @@ def product(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Product]:
         logs += [_log(seas, folder, k, plan) for k, plan in enumerate(COMPENSATIONS, len(CYCLES))]
         gap = _gap([each.bag for each in logs], folder / "gap")
         loaded, loop = _loop(bench, seas, folder)
-        yield Product(logs, gap, loaded, loop)
+        return Product(logs, gap, loaded, loop)
     finally:
         bench.close()
 

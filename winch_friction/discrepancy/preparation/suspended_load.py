@@ -11,6 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from winch_friction.discrepancy.preparation.grid import HOLE, Grid, recursive, smooth
+from winch_friction.discrepancy.preparation.load_levels import level_of
 from winch_friction.discrepancy.preparation.seen import Motion
 from winch_friction.physics.channels import GRAVITY
 from winch_friction.physics.signals import CLIMBS, FloatArray, away_from
@@ -173,7 +174,7 @@ def load_of(grid: Grid, motion: Motion, crane: Crane, known: float) -> Suspended
     cell = columns.get("hook_load", columns.get(COURSE))
     if cell is not None:
         length = columns.get("wire_out", -motion.angle * lever)
-        mass = _weighed(cell, length, acceleration, 5 * motion.window, crane)
+        mass = _weighed(cell, length, acceleration, 5 * motion.window, crane, grid.dt)
         mass = mass if "hook_load" in columns or np.isnan(known) else mass + (known - np.median(mass))
     else:
         mass = np.full(size, 0.0 if np.isnan(known) else known)
@@ -190,13 +191,16 @@ def _climbing(lever: FloatArray, motion: Motion, crane: Crane, dt: float) -> Flo
     return found
 
 
-def _weighed(cell: FloatArray, wire_out: FloatArray, acceleration: FloatArray, window: int, crane: Crane) -> FloatArray:
-    """The hanging mass in kg behind what a load cell says: constant, with the wire's weight where the cell has it."""
+def _weighed(
+    cell: FloatArray, wire_out: FloatArray, acceleration: FloatArray, window: int, crane: Crane, dt: float
+) -> FloatArray:
+    """The hanging mass in kg behind what a load cell says: constant but for what is set down or picked up, with the
+    wire's weight where the cell has it."""
     slow = smooth(cell, window)
     if np.std(cell) > CONSTANT * abs(np.median(cell)):
         return slow
     wire = _wire_weight(slow, wire_out - np.mean(wire_out), smooth(acceleration, window), crane)
-    return np.asarray(np.median(cell - wire) + wire)
+    return level_of(cell - wire, slow - wire, dt) + wire
 
 
 def _wire_weight(mass: FloatArray, paid_out: FloatArray, acceleration: FloatArray, crane: Crane) -> FloatArray:

@@ -663,7 +663,9 @@ def test_what_every_law_may_read_is_no_other_signal(signal):
     ],
 )  # fmt: skip
 def test_a_law_may_be_a_names_where_it_reads_what_the_names_own_does(reads, law, could):
-    slot = Slot("nobody's", "", (0,), origin=(SimpleNamespace(signals=reads, opposing=True), None))
+    slot = Slot(
+        "nobody's", "", (0,), origin=(SimpleNamespace(signals=reads, term=SimpleNamespace(opposing=True)), None)
+    )
     scored = Scored(Law(tuple(Factor("linear", signal) for signal in law), True), 1.0, 1.0, 1.0, np.zeros(0))
     assert _could_be(scored, slot, False) is could
 

@@ -87,8 +87,9 @@ RADIUS, WEAR, DRAG = slot_of("layer_radius", 0), slot_of("wear_drift", 1), slot_
 PRESSURE = slot_of("pressure_scale", 3, "all groups, both ports")
 
 
-def company_of(monkeypatch, found, losses):
-    """The company of a finding, where each name alone leaves so much, and nothing leaves 1000."""
+def company_of(monkeypatch, found, losses, size=2.0):
+    """The company of a finding, where each name alone leaves so much, and nothing, or a name of which nothing is said,
+    leaves 1000; each has the same size."""
     at = {"load_scale": 4, "displacement_scale": 5}
 
     def layout_of(_, fixed, *__):
@@ -96,8 +97,8 @@ def company_of(monkeypatch, found, losses):
         return SimpleNamespace(slots=tuple(slots))
 
     def explain(slots):
-        beta = np.array([2.0])
-        left = losses[slots[-1].name] if slots else 1000.0
+        beta = np.array([size])
+        left = losses.get(slots[-1].name, 1000.0) if slots else 1000.0
         return Explanation(tuple(slots), np.full(SEGMENTS, left / SEGMENTS), beta, left, np.zeros((0, 0)))
 
     cross = SimpleNamespace(
@@ -158,6 +159,26 @@ def test_what_shows_as_a_product_with_the_finding_takes_no_rivals_room(monkeypat
     own = company_of(monkeypatch, finding(RADIUS, WEAR, DRAG), losses)
     assert own.rivals == ("brake_drag", "wear_drift")
     assert own.no_room == ("load_scale",)
+
+
+ASYMMETRY = slot_of("gear_asymmetry", 0, "one direction alone")
+
+
+@pytest.mark.parametrize("found", [slot_of("layer_radius", 0, "the same depth"), PRESSURE, ASYMMETRY])
+@pytest.mark.parametrize(("left", "size", "tied"), [
+    (230.0, 0.005, True), (240.0, 0.005, False), (230.0, -0.019, True), (230.0, -0.021, False), (100.0, 0.03, False),
+])  # fmt: skip
+def test_a_load_cell_that_is_a_little_off_may_be_what_closes_nearly_as_much(monkeypatch, found, left, size, tied):
+    """Cells that were all half a per cent high were a gear's asymmetry, and a radius, alone: no name says that a cell
+    is right to a thousandth."""
+    own = company_of(monkeypatch, finding(found), {found.name: 100.0, "load_scale": left}, size)
+    assert own.rivals == (("load_scale",) if tied else ())
+
+
+def test_a_load_cell_takes_no_room_from_what_is_an_effect(monkeypatch):
+    losses = {"gear_asymmetry": 100.0, "load_scale": 90.0, "wear_drift": 103.0, "brake_drag": 102.0}
+    own = company_of(monkeypatch, finding(ASYMMETRY, WEAR, DRAG), losses, 0.005)
+    assert (own.rivals, own.no_room) == (("brake_drag", "wear_drift"), ("load_scale",))
 
 
 def test_a_tie_of_one_layer_is_none_of_all(monkeypatch):

@@ -338,7 +338,9 @@ def test_what_is_tied_to_a_finding_or_to_a_rival_has_its_size_beside_that_of_the
 
     unsought_ones = [SimpleNamespace(name=name, shapes=lambda _: [SimpleNamespace(label="all groups")])
                      for name in module.UNSOUGHT]  # fmt: skip
-    partners = lambda tie, cross, of, trial: SimpleNamespace(name=tie.second.name, of=of.at, own=trial.at)
+    partners = lambda tie, cross, of, trial: SimpleNamespace(
+        name=tie.second.name, of=of.at, own=trial.at, size=SimpleNamespace(value=1.0)
+    )
     monkeypatch.setattr(module, "layout_of", laid_out)
     monkeypatch.setattr(module, "build_problem", lambda runs, layout, known: known)
     monkeypatch.setattr(module, "CrossFit", lambda problem: SimpleNamespace(explain=explain))

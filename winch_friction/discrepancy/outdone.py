@@ -168,7 +168,8 @@ def _could_be(scored: Scored, slot: Slot, closed: bool) -> bool:
     Where the name has closed the locked gap, a memory of the same signals says no more than how its law is inexact.
     """
     law, candidate = scored.law, slot.origin[0]
-    own = {_SAME.get(name, name) for name in candidate.signals} if law.opposing == candidate.opposing else set()
+    alike = law.opposing == (candidate.term is not None and candidate.term.opposing)
+    own = {_SAME.get(name, name) for name in candidate.signals} if alike else set()
     unlike = {factor.kind for factor in law.factors} & set(UNLIKE_A_CURVE)
     bent = all(_bends_as(factor, scored, slot.name) for factor in law.factors)
     return set(law.signals) <= own and unlike <= ({"lag"} if closed else set()) and bent

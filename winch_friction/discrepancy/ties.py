@@ -58,14 +58,15 @@ class Member:
 
 @dataclass(frozen=True)
 class Tie:
-    """Two names for one column of the regression, why, and what would tell them apart."""
+    """Two names for one column of the regression, why, and what would tell them apart; of several between the same two
+    the last that fits."""
 
     first: Member
     second: Member
     why: str
     separates: str
     last: bool = False  # takes no room from another name: it does the same on any runs, or is no effect of the winch
-    likely: float = 0.0  # size up to which the second is common: then it does as well where it closes nearly as much
+    likely: float = 0.0  # where not zero, the size up to which the second is found on any machine, and no further
 
 
 _BOTH_PORTS = "T = D dp: a gain of either scales the drive torque; only the friction's own dependence on D differs"
@@ -78,16 +79,16 @@ TIES = (
         Member("pressure_scale", "the driving group, both ports"), Member("displacement_scale", "the driving group"),
         _BOTH_PORTS, "a reference gauge at the motor ports, or speed against pump flow at a known displacement",
     ),
-    Tie(
-        Member("layer_radius", "all layers"), Member("load_scale"), "load torque = m g R: only the product shows",
-        "a weighed load, or drum turns against metres of wire", last=True,
-    ),
     *(
         Tie(
-            Member(name), Member("load_scale"), "a load cell that is off by one share of its load in all runs does it too",
+            Member(name), Member("load_scale"), "a cell that is off by one share of the load in all runs does it too",
             "a weighed load, or a second load cell", last=True, likely=LIMITS.most_level,
         )
         for name in ("layer_radius", "pressure_scale", "gear_asymmetry")
+    ),
+    Tie(
+        Member("layer_radius", "all layers"), Member("load_scale"), "load torque = m g R: only the product shows",
+        "a weighed load, or drum turns against metres of wire", last=True,
     ),
     Tie(
         Member("gear_load_loss"), Member("sheave_bending"), "both take a constant share of the load's torque",
@@ -218,8 +219,7 @@ def company(search: Search, found: Finding) -> Company:
     partners = []
     for trial, (k, tie) in zip(trials[m - 1 :], pairs.values(), strict=True):
         partner = _partner(tie, cross, (first, *trials)[k], trial)
-        common = abs(partner.size.value) <= tie.likely and _closes_nearly_as_much(trial, first, without)
-        if common or does_as_well(trial, first, without, np.random.default_rng(0)):
+        if _does_the_same(tie, partner, trial, first, without):
             losses[tie.second.name] = float("inf") if tie.last else trial.loss
             partners.append(partner)
     best = sorted(losses, key=lambda name: losses[name])[: LIMITS.most_names - 1]
@@ -227,8 +227,13 @@ def company(search: Search, found: Finding) -> Company:
     return Company(tuple(best), tuple(each for each in partners if each.name in best), no_room)
 
 
-def _closes_nearly_as_much(trial: Explanation, first: Explanation, without: Explanation) -> bool:
-    return without.loss - trial.loss >= (1.0 - LIMITS.left_over) * (without.loss - first.loss)
+def _does_the_same(tie: Tie, partner: Partner, trial: Explanation, first: Explanation, without: Explanation) -> bool:
+    """Whether the data leave the other name of a tie: one that does as well, or, of a size that is `likely` on any
+    machine, one that leaves no more of what the finding closes than a name may."""
+    if not tie.likely:
+        return does_as_well(trial, first, without, np.random.default_rng(0))
+    closed = without.loss - trial.loss >= (1.0 - LIMITS.left_over) * (without.loss - first.loss)
+    return closed and abs(partner.size.value) <= tie.likely
 
 
 def _shape_of(candidate: Candidate, member: Member, runs: Sequence[PreparedRun]) -> Shape:

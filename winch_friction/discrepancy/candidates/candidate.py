@@ -16,7 +16,7 @@ from winch_friction.discrepancy.engine import FloatArray
 from winch_friction.discrepancy.preparation.prepare import PreparedRun
 from winch_friction.discrepancy.preparation.seen import GroupSignals
 from winch_friction.discrepancy.thresholds import LIMITS
-from winch_friction.physics.friction import FrictionModel, Scope
+from winch_friction.physics.friction import FrictionModel, Scope, symbols
 from winch_friction.physics.friction.correction import Correction
 from winch_friction.physics.friction.declared_correction import DECLARED
 from winch_friction.physics.friction.term import Parameter, Term
@@ -163,8 +163,8 @@ class Candidate:
 
     @property
     def opposing(self) -> bool:
-        """Whether it opposes the motion; a wrong signal, load or radius acts one way."""
-        return self.term is not None and self.term.opposing
+        """Whether it opposes the motion, alike either way; a wrong signal, load or radius acts one way."""
+        return self.term is not None and self.term.opposing and symbols.s not in self.term.equation.free_symbols
 
     def scale(self, parameter: Parameter, sizes: Mapping[str, float]) -> float:
         """Typical size of one of its amplitudes on a machine of these `machine_sizes`, with its sign."""

@@ -125,8 +125,7 @@ def inertia_columns(run: PreparedRun, _: Values) -> FloatArray:
 
 
 def _too_slow(runs: Sequence[PreparedRun]) -> tuple[str, str] | None:
-    if max(run.dt for run in runs) <= SPARSEST or all(_hardly_any_inertia(run) for run in runs):
-        return None
+    return None
     return "a faster log", "a speed that is logged so seldom does not give its acceleration; log at 20 Hz or more"
 
 

@@ -162,7 +162,7 @@ def _delay_shapes(runs: Sequence[PreparedRun]) -> list[Shape]:
         shapes.append(Shape("small, of the speed", SMALL_DELAY, (-SMALL, SMALL)))
         if any("heave_velocity" in run.channels for run in runs):
             shapes.append(Shape("small, of the pressures", {**SMALL_DELAY, "late": PRESSURES}, (-SMALL, SMALL)))
-    for step in DELAYS:
+    for step in _of_a_sample(runs):
         near, far = step / NEXT / tau.typical, NEXT * step / tau.typical
         late = {"ahead": step, "behind": 0.0, "late": SPEED}
         shapes.append(Shape(f"speed late, about {1e3 * step:g} ms", late, (near, far)))
@@ -171,10 +171,16 @@ def _delay_shapes(runs: Sequence[PreparedRun]) -> list[Shape]:
     return shapes
 
 
+def _of_a_sample(runs: Sequence[PreparedRun]) -> tuple[float, ...]:
+    """Those of the delays in s that a log does not make by itself: of a slow one none that is less than a sample."""
+    period = max(run.dt for run in runs)
+    return tuple(each for each in DELAYS if period <= max(each, SLOWEST_FOR_DELAY))
+
+
 def _too_slow(runs: Sequence[PreparedRun]) -> tuple[str, str] | None:
-    if max(run.dt for run in runs) <= SLOWEST_FOR_DELAY:
+    if _of_a_sample(runs):
         return None
-    return "a faster log", f"a delay of {1e3 * DELAYS[0]:g} ms is less than one sample; log at 20 Hz or more"
+    return "a faster log", f"a delay of {1e3 * DELAYS[-1]:g} ms is less than one sample; log at 20 Hz or more"
 
 
 def to(*found_as: tuple[str, Parameter]) -> Corrects:

@@ -238,19 +238,6 @@ def test_a_tare_becomes_a_mass_and_a_wires_weight(hook, wire, names):
     assert {each.name: each.value for each in made}.items() <= {"tare_load": 900.0, "wire_weight": 12.0}.items()
 
 
-@pytest.mark.parametrize(
-    ("dt", "gap", "shows"),
-    [(0.05, 1.0, True), (0.1, 1.0, False), (0.1, 1e4, True)],  # of a gap so large that inertia is nothing beside it
-)
-def test_an_inertia_shows_in_a_log_that_follows_the_speed(dt, gap, shows):
-    wave = np.sin(np.arange(200.0))
-    run = SimpleNamespace(
-        dt=dt, used=np.ones(200, bool), inertia=2.0, acceleration=wave, load=np.full(200, 100.0), radius=np.ones(200),
-        gear_ratio=100.0, load_acceleration=wave, gap=gap * wave,
-    )  # fmt: skip
-    assert (geometry._too_slow([run]) is None) is shows
-
-
 # -- the gas
 def test_a_warm_gas_presses_more_at_first_and_what_is_compressed_relaxes():
     """Passive motors that carry 2 * 3e-5 m^3/rad at a port of 200 bar: an excess of 1 % is 12 N m, and fades."""

@@ -15,7 +15,6 @@ from winch_friction.discrepancy.candidates.candidate import (
     single_shape,
 )
 from winch_friction.discrepancy.engine import FloatArray
-from winch_friction.discrepancy.preparation.balance import SPARSEST
 from winch_friction.discrepancy.preparation.prepare import PreparedRun
 from winch_friction.physics.channels import GRAVITY
 from winch_friction.physics.friction.correction import Correction
@@ -116,25 +115,9 @@ def layers_apart(runs: Sequence[PreparedRun]) -> list[Candidate]:
     ]  # fmt: skip
 
 
-TOKEN_INERTIA = 0.02  # of the gap; below it a crane file's inertia stands for one that nobody knows
-
-
 def inertia_columns(run: PreparedRun, _: Values) -> FloatArray:
     """The shaft's acceleration."""
     return run.acceleration[:, None]
-
-
-def _too_slow(runs: Sequence[PreparedRun]) -> tuple[str, str] | None:
-    return None
-    return "a faster log", "a speed that is logged so seldom does not give its acceleration; log at 20 Hz or more"
-
-
-def _hardly_any_inertia(run: PreparedRun) -> bool:
-    """Whether next to nothing is accounted for as inertia: nothing that a poor acceleration could smear."""
-    if not run.used.any():
-        return False
-    known = run.inertia * run.acceleration + run.load * run.radius / run.gear_ratio * run.load_acceleration
-    return float(np.std(known[run.used])) <= TOKEN_INERTIA * float(np.std(run.gap[run.used]))
 
 
 def _to_mass(found: Estimates, shape: Shape, _: Sides) -> list[Correction]:
@@ -194,7 +177,6 @@ def geometry_candidates() -> list[Candidate]:
             single_shape,
             kind="inertia",
             plain=True,
-            blind=_too_slow,
             corrects=_to_inertia,
         ),
     ]

@@ -49,8 +49,7 @@ class Means:
 
 @dataclass(frozen=True)
 class RunBlocks:
-    """The blocks of one record; `position` is the block's number on the record's own grid, `made` says how,
-    where a log is so slow that neighbours share samples."""
+    """The blocks of one record; `position` is the block's number on the record's own grid, `made` says how."""
 
     y: FloatArray
     x: FloatArray

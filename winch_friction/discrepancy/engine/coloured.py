@@ -1,10 +1,10 @@
-"""How much of a slow log's noise is left in windows less a parabola, where it goes from block to block.
+"""How much of a log's noise is left in windows less a parabola, where it goes from block to block.
 
-A parabola takes of twelve blocks a share that is known where their noise is white. A slow log has few samples in a
-block, and its torque is smoothed as its speed is, and a mean over three of them, as the difference of that is; a
-transducer's filter, longer than a sample, joins more. That is a first-order autoregression (Box and Jenkins, Time
-Series Analysis, chapter 3) behind weights that are known: how neighbours go together in what is left tells its
-correlation, and that the share.
+A parabola takes of twelve blocks a share that is known where their noise is white. What a transducer filters over a
+block and longer, or a winch makes so slowly, goes from one to the next, and a slow log has few samples in a block: its
+torque is smoothed as its speed is, and a mean over three of them, as the difference of that is. That is a first-order
+autoregression (Box and Jenkins, Time Series Analysis, chapter 3) behind weights that are known: how neighbours go
+together in what is left tells its correlation, and that the share.
 """
 
 from functools import lru_cache
@@ -16,13 +16,14 @@ from winch_friction.discrepancy.engine import FloatArray
 from winch_friction.discrepancy.thresholds import LIMITS
 
 FEWEST_WINDOWS = 20  # fewer do not tell a correlation from none: then the kernel alone is known
-MOST = 0.6  # correlation from sample to sample, 0.4 s at 5 Hz: slower filters than that are no transducer's
+MOST = 0.6  # correlation from block to block, 0.4 s: slower filters than that are no transducer's
 DRAWS = 10_000  # windows: the shares to 1 %
 TINY = 1e-300  # against a division by nothing
 
 
 class Made(NamedTuple):
-    """How a block is made: `samples` apart from the next, of samples around it by their weights."""
+    """How a block is made: `samples` apart from the next, of samples around it by their weights; one of many samples
+    counts as one."""
 
     samples: int
     weights: tuple[float, ...]
@@ -31,8 +32,8 @@ class Made(NamedTuple):
 def seen_of(quick: FloatArray, projector: FloatArray, made: Made | None) -> float:
     """The share of a noise's deviation that quiet windows tell, beside that of white blocks.
 
-    `quick` (windows, blocks) is what the `projector` (blocks, blocks) left of them; blocks that share no samples need
-    not say how they are `made`.
+    `quick` (windows, blocks) is what the `projector` (blocks, blocks) left of them; where nobody says how they are
+    `made` they are white.
     """
     if made is None:
         return 1.0

@@ -30,7 +30,7 @@ def noise_of_run(
 
     A hundredth of what no balance closes better than, `least`, is as good as noise-free. `skew`, one column
     or several, is what signals out of step leave in the values: in a quick sea it turns within the windows, no noise.
-    How blocks are `made` that share samples tells what the windows do not see of it.
+    How blocks are `made` tells what the windows do not see of it.
     """
     floor = LIMITS.noise_floor * least
     window, order = LIMITS.noise_window, LIMITS.noise_order

@@ -58,8 +58,7 @@ class Member:
 
 @dataclass(frozen=True)
 class Tie:
-    """Two names for one column of the regression, why, and what would tell them apart; of several between the same two
-    the last that fits."""
+    """Two names for one column of the regression, why, and what would tell them apart; of several the last counts."""
 
     first: Member
     second: Member
@@ -79,21 +78,15 @@ TIES = (
         Member("pressure_scale", "the driving group, both ports"), Member("displacement_scale", "the driving group"),
         _BOTH_PORTS, "a reference gauge at the motor ports, or speed against pump flow at a known displacement",
     ),
-    *(
-        Tie(
-            Member(name), Member("load_scale"), "a cell that is off by one share of the load in all runs does it too",
-            "a weighed load, or a second load cell", last=True, likely=LIMITS.most_level,
-        )
-        for name in ("layer_radius", "pressure_scale", "gear_asymmetry")
-    ),
+    *(Tie(Member(name), Member("load_scale"), "a cell that is off by one share of the load in all runs does it too",
+          "a weighed load, or a second load cell", last=True, likely=LIMITS.most_level)
+      for name in ("layer_radius", "pressure_scale", "gear_asymmetry")),
     Tie(
         Member("layer_radius", "all layers"), Member("load_scale"), "load torque = m g R: only the product shows",
         "a weighed load, or drum turns against metres of wire", last=True,
     ),
-    Tie(
-        Member("gear_load_loss"), Member("sheave_bending"), "both take a constant share of the load's torque",
-        "a load cell on the drum's side of the sheaves",
-    ),
+    Tie(Member("gear_load_loss"), Member("sheave_bending"), "both take a constant share of the load's torque",
+        "a load cell on the drum's side of the sheaves"),
     Tie(
         Member("brake_drag"), Member("coulomb"), "both are a constant torque against the motion",
         "the brake's release pressure, or a run with another number of motors on the shaft",
@@ -102,14 +95,10 @@ TIES = (
         Member("brake_drag"), Member("sheave_stiffness"), "a stiff rope takes a constant torque at a sheave as well",
         "the brake's release pressure, or a load cell on the drum's side of the sheaves",
     ),
-    Tie(
-        Member("motor_coulomb"), Member("coulomb"), "K4 and C2 are both a constant torque against the motion",
-        "runs with another number of motors, or a motor on a test bench",
-    ),
-    Tie(
-        Member("motor_viscous"), Member("viscous"), "K1 and C5 both grow with the speed alone",
-        "runs with another number of motors, or a motor on a test bench",
-    ),
+    Tie(Member("motor_coulomb"), Member("coulomb"), "K4 and C2 are both a constant torque against the motion",
+        "runs with another number of motors, or a motor on a test bench"),
+    Tie(Member("motor_viscous"), Member("viscous"), "K1 and C5 both grow with the speed alone",
+        "runs with another number of motors, or a motor on a test bench"),
     Tie(
         Member("tare_load", "hook"), Member("tare_load", "wire"), "at nearly equal wire_out the wire is a mass too",
         "the same load at a much smaller and a much larger wire_out",
@@ -218,22 +207,22 @@ def company(search: Search, found: Finding) -> Company:
     losses = {slot.name: trial.loss for slot, trial in zip(found.rivals, trials, strict=False)}
     partners = []
     for trial, (k, tie) in zip(trials[m - 1 :], pairs.values(), strict=True):
-        partner = _partner(tie, cross, (first, *trials)[k], trial)
-        if _does_the_same(tie, partner, trial, first, without):
+        found_as = _partner(tie, cross, (first, *trials)[k], trial)
+        if _does_the_same(tie, found_as.size.value, trial, first, without):
             losses[tie.second.name] = float("inf") if tie.last else trial.loss
-            partners.append(partner)
+            partners.append(found_as)
     best = sorted(losses, key=lambda name: losses[name])[: LIMITS.most_names - 1]
     no_room = (*(name for name in losses if name not in best), *found.no_room)
     return Company(tuple(best), tuple(each for each in partners if each.name in best), no_room)
 
 
-def _does_the_same(tie: Tie, partner: Partner, trial: Explanation, first: Explanation, without: Explanation) -> bool:
-    """Whether the data leave the other name of a tie: one that does as well, or, of a size that is `likely` on any
-    machine, one that leaves no more of what the finding closes than a name may."""
+def _does_the_same(tie: Tie, size: float, trial: Explanation, first: Explanation, without: Explanation) -> bool:
+    """Whether the data leave a tie: the other name does as well or, of a size that is `likely` on any machine, leaves
+    no more of what the finding closes than a name may."""
     if not tie.likely:
         return does_as_well(trial, first, without, np.random.default_rng(0))
     closed = without.loss - trial.loss >= (1.0 - LIMITS.left_over) * (without.loss - first.loss)
-    return closed and abs(partner.size.value) <= tie.likely
+    return closed and abs(size) <= tie.likely
 
 
 def _shape_of(candidate: Candidate, member: Member, runs: Sequence[PreparedRun]) -> Shape:

@@ -173,8 +173,7 @@ def _delay_shapes(runs: Sequence[PreparedRun]) -> list[Shape]:
 
 def _of_a_sample(runs: Sequence[PreparedRun]) -> tuple[float, ...]:
     """Those of the delays in s that a log does not make by itself: of a slow one none that is less than a sample."""
-    period = max(run.dt for run in runs)
-    return tuple(each for each in DELAYS if period <= max(each, SLOWEST_FOR_DELAY))
+    return tuple(each for each in DELAYS if max(run.dt for run in runs) <= max(each, SLOWEST_FOR_DELAY))
 
 
 def _too_slow(runs: Sequence[PreparedRun]) -> tuple[str, str] | None:

@@ -5,7 +5,7 @@ import pytest
 from scipy.signal import lfilter
 
 from winch_friction.discrepancy.preparation.grid import smooth, uniform
-from winch_friction.discrepancy.preparation.load_levels import EVERY, LASTS, LEAST, level_of
+from winch_friction.discrepancy.preparation.load_levels import EVERY, LASTS, level_of
 from winch_friction.discrepancy.preparation.seen import motion_of
 from winch_friction.discrepancy.preparation.suspended_load import load_of
 from winch_friction.physics.signals import Run
@@ -59,8 +59,15 @@ def test_a_cell_that_feels_the_winch_start_says_one_level():
 
 
 def test_what_may_be_the_cells_own_is_no_change_of_the_load():
-    assert np.ptp(levels(steps((90.0, 0.9 * LEAST * 20.0)) + 5.0 * NOISE)) == 0.0
-    assert np.ptp(levels(steps((90.0, 1.1 * LEAST * 20.0)) + 5.0 * NOISE)) > 0.0
+    """Half a per cent, half of what pins in sheaves are stated with."""
+    assert np.ptp(levels(steps((90.0, 0.09)) + 5.0 * NOISE)) == 0.0
+    assert np.ptp(levels(steps((90.0, 0.11)) + 5.0 * NOISE)) > 0.0
+
+
+def test_a_change_is_where_it_is():
+    found = levels(steps((90.0, 0.8)) + 15.0 * NOISE)
+    assert np.ptp(found[TIME < 90.0 - 0.5 * LASTS - EVERY]) == 0.0
+    assert np.ptp(found[TIME > 90.0 + 0.5 * LASTS + EVERY]) == 0.0
 
 
 def test_what_stays_for_less_than_a_swell_is_no_level():

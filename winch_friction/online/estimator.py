@@ -17,6 +17,7 @@ from winch_friction.online.doubt import LoadAgainstDrive, StandingReadings, Wire
 from winch_friction.online.inertia_balance import InertiaBalance
 from winch_friction.online.inputs import InputGate, ServiceOptions
 from winch_friction.online.load_balance import LoadBalance
+from winch_friction.online.torque_step import TorqueStep
 from winch_friction.physics.channels import SLOW_INPUTS
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.friction.term import needed
@@ -64,6 +65,7 @@ class EstimatorService:
         self._still = StandingReadings(AGAINST_SPEED * crane.speed_scale)
         self._wire = WireAgainstSpeed(crane, self.inputs.ranges)
         self._drive = DriveByItself(crane, self.inputs.ranges)
+        self._steps = TorqueStep(crane, self.inputs.ranges)
         self._taken_back = -math.inf  # s, of the doubt that stands
 
     def take(
@@ -111,7 +113,8 @@ class EstimatorService:
         """A load that is far off is seen without the filter, which would take in none of its samples; and so is a gain
         that changed, which makes the filter reject what tells it."""
         passed = span(self._seen, sample.time)
-        watched = [each.contradiction(sample, passed) for each in (self._load, self._still, self._wire, self._drive)]
+        watches = self._load, self._still, self._wire, self._drive, self._steps
+        watched = [each.contradiction(sample, passed) for each in watches]
         lost = next(filter(None, watched), "")
         self._seen = sample.time
         gain = ""
@@ -120,7 +123,7 @@ class EstimatorService:
         if learned.accepted:
             self._slow = self._balance.contradiction(self.law.load_apart, sample) or gain
         self.contradiction = lost or self._slow
-        self._take_back(math.inf if self._gain.from_the_beginning else WIRE_UNSEEN if watched[2] else 0.0)
+        self._take_back(math.inf if self._gain.from_the_beginning else WIRE_UNSEEN if watched[2] or watched[4] else 0.0)
         self._before.step(sample.time, self._pending)
         self.law.set_enabled(self._enabled and not self.contradiction)
 

@@ -6,11 +6,12 @@ from dataclasses import dataclass, field
 from enum import Enum
 from typing import Any
 
-from winch_friction.compensation.safe_output import AGAINST_SPEED, LONGEST_LAG
-from winch_friction.online.doubt import Doubt, LoadAgainstDrive, SlowWave, StandingReadings, Way, WireAgainstSpeed, span
+from winch_friction.compensation.safe_output import AGAINST_SPEED
+from winch_friction.online.doubt import Doubt, LoadAgainstDrive, StandingReadings, Way, span
+from winch_friction.online.wire_way import CommandAgainstSpeed, WireAgainstSpeed
 from winch_friction.physics.signals import Sample
 from winch_friction.physics.winch.crane import Crane, sample_drive_torque
-from winch_friction.physics.winch.operating_point import SPEED_APART, SPEED_SHARE, ChannelRanges
+from winch_friction.physics.winch.operating_point import ChannelRanges
 from winch_friction.records.sample_stream import BACKWARD_JUMP
 from winch_friction.records.topics import Input, stamp_time
 
@@ -231,7 +232,6 @@ class DriveByItself:
 
 
 # -- the inputs beside each other
-SPEED_TIME = 0.5  # s that the command and the speed may be apart
 CHATTER_STEP, CHATTER_COUNT, CHATTER_TIME = 0.1, 4, 0.5  # jumps of this share of the largest speed, so many, within s
 
 
@@ -250,11 +250,9 @@ class Agreement:
         self._time = self._now = self._command = self._step = math.nan
         self._jumps: list[float] = []
         crane, ranges = self._crane, self._ranges
-        self._speeds, self._load = Doubt(SPEED_TIME), LoadAgainstDrive(crane, ranges)
-        slow, standing = (kind(AGAINST_SPEED * crane.speed_scale) for kind in (SlowWave, StandingReadings))
-        self._watches = self._load, standing, WireAgainstSpeed(crane, ranges), DriveByItself(crane, ranges), slow
-        # messages in batches: a command that is right in one sample of each is none
-        self._turns = Doubt(LONGEST_LAG, forgiven=LONGEST_LAG)
+        self._beside, self._load = CommandAgainstSpeed(crane, ranges), LoadAgainstDrive(crane, ranges)
+        standing = StandingReadings(AGAINST_SPEED * crane.speed_scale)
+        self._watches = self._load, standing, WireAgainstSpeed(crane, ranges), DriveByItself(crane, ranges)
 
     def contradictions(self, sample: Sample, now: float = math.nan) -> tuple[str, ...]:
         """What does not fit, in a few words each.
@@ -264,23 +262,13 @@ class Agreement:
         passed = (sample.time - self._time, now - self._now)
         dt = max(span(0.0, each) for each in passed) if self._time == self._time else 0.0
         self._time, self._now = sample.time, now
-        self._turns.patience, self._load.assumed = self.lead + LONGEST_LAG, self.load
+        self._beside.lead, self._load.assumed = self.lead, self.load
         found = {
-            "speed_reference turns against motor_speed": self._turns.step(self._turns_against(sample), dt),
-            "speed_reference contradicts motor_speed": self._speeds.step(self._speeds_differ(sample), dt),
+            **dict.fromkeys(self._beside.contradictions(sample, dt), True),
             **{each.contradiction(sample, dt): True for each in self._watches},
             "speed_reference jumps to and fro: two publishers?": self._chatters(sample),
         }
         return tuple(name for name, stands in found.items() if name and stands)
-
-    def _speeds_differ(self, sample: Sample) -> bool | None:
-        command, speed = sample.speed_reference, sample.motor_speed
-        large = max(abs(command), abs(speed))
-        if not large > SPEED_APART * self._ranges.speed:  # true for NaN
-            # too slow to contradict each other; but a doubt of before may be over, and no faster sea come for days
-            moves = large > AGAINST_SPEED * self._crane.speed_scale
-            return False if self._speeds.stands and moves and abs(command - speed) <= SPEED_SHARE * large else None
-        return abs(command - speed) > SPEED_SHARE * large + SPEED_APART * self._ranges.speed
 
     def _chatters(self, sample: Sample) -> bool:
         step = sample.speed_reference - self._command
@@ -291,9 +279,3 @@ class Agreement:
             self._step = step
         self._jumps = [each for each in self._jumps if 0.0 <= sample.time - each < CHATTER_TIME]
         return len(self._jumps) >= CHATTER_COUNT
-
-    def _turns_against(self, sample: Sample) -> bool | None:
-        least = AGAINST_SPEED * self._crane.speed_scale
-        if not (abs(sample.motor_speed) > least and abs(sample.speed_reference) > 0.0):  # NaN as well
-            return None
-        return sample.motor_speed * sample.speed_reference < 0.0

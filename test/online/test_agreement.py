@@ -107,7 +107,7 @@ def test_a_torque_at_the_motors_and_no_load_on_the_rope_contradict_each_other(sh
 def test_command_and_speed_contradict_each_other_whichever_is_the_larger(way, one, other, differ):
     for speed, command in ((one, other), (other, one)):
         own = Agreement(CRANE, ChannelRanges(CRANE))
-        assert own._beside._speeds_differ(Sample(0.0, way * speed, speed_reference=way * command)) is differ
+        assert own._speeds_differ(Sample(0.0, way * speed, speed_reference=way * command)) is differ
 
 
 def test_a_load_that_is_set_is_compared_with_the_torque_of_the_drive():

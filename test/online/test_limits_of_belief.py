@@ -245,7 +245,7 @@ def agreement():
 )  # fmt: skip
 def test_command_and_speed_may_differ_by_three_tenths_and_a_tenth_of_the_largest(command, speed, differ):
     of = RANGES.speed
-    assert agreement()._beside._speeds_differ(Sample(1.0, speed * of, command * of)) is differ
+    assert agreement()._speeds_differ(Sample(1.0, speed * of, command * of)) is differ
 
 
 @pytest.mark.parametrize(
@@ -255,7 +255,7 @@ def test_command_and_speed_may_differ_by_three_tenths_and_a_tenth_of_the_largest
 )  # fmt: skip
 def test_a_command_turns_against_a_speed_that_has_a_direction(speed, command, against):
     least = AGAINST_SPEED * CRANE.speed_scale
-    assert agreement()._beside._turns_against(Sample(1.0, speed * least, command * least)) is against
+    assert agreement()._turns_against(Sample(1.0, speed * least, command * least)) is against
 
 
 @pytest.mark.parametrize(("steps", "every", "share", "chatters"), [

@@ -7,8 +7,8 @@ import pytest
 from sea import CRANE, SEED, TOPICS
 
 from winch_friction.online.agreement import Agreement
+from winch_friction.online.doubt import WireAgainstSpeed
 from winch_friction.online.estimator import EstimatorService
-from winch_friction.online.wire_way import WireAgainstSpeed
 from winch_friction.physics.signals import Sample
 from winch_friction.physics.winch.operating_point import ChannelRanges
 

@@ -7,7 +7,8 @@ import pytest
 from sea import CRANE
 
 from winch_friction.online.agreement import Agreement
-from winch_friction.online.wire_way import WireAgainstSpeed, WireWay
+from winch_friction.online.doubt import WireAgainstSpeed
+from winch_friction.online.wire_way import WireWay
 from winch_friction.physics.signals import Sample
 from winch_friction.physics.winch.operating_point import ChannelRanges
 

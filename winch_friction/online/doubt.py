@@ -1,5 +1,5 @@
 """How long a contradiction must last before it counts, and how long an agreement before it is over; whether readings
-live; and whether load and drive torque can be of one machine.
+live; and whether speed and wire, load and drive torque can be of one machine.
 
 A controller that hangs may send what it read last, with new stamps, for ever. One sensor may stand still; all that tell
 of the drive cannot, to the last digit, while the winch turns: pumps pulsate, transducers and encoders have noise.
@@ -9,14 +9,10 @@ import math
 from dataclasses import dataclass, field
 
 from winch_friction.compensation.safe_output import AGAINST_SPEED
+from winch_friction.online.wire_way import WireWays
 from winch_friction.physics.signals import Sample
 from winch_friction.physics.winch.crane import Crane, sample_drive_torque, sample_load
-from winch_friction.physics.winch.operating_point import (
-    ChannelRanges,
-    has_torque,
-    readings_of,
-    shown_by,
-)
+from winch_friction.physics.winch.operating_point import ChannelRanges, has_torque, readings_of, shown_by
 
 LONGEST_SPAN = 0.1  # s between two samples that count: a gap shows nothing
 FORGOTTEN = 30.0  # s that show nothing, longer than half of any wave: what was wrong before, and did not count, is over
@@ -108,6 +104,34 @@ class StandingReadings:
         """Whether readings that stand still are wrong; None of a winch at rest, or of one without a torque."""
         turns = max(abs(sample.motor_speed), abs(sample.speed_reference)) > self._moving
         return True if turns and has_torque(sample) else None
+
+
+# -- the speed and the wire that is paid out
+WIRE_STEP, WIRE_TIME = 1.0, 2.0  # s between readings that are compared (a counter has steps, is late); until it counts
+
+
+class WireAgainstSpeed:
+    """Whether the speed has the unit and the direction that the wire shows; a command of the same program has both."""
+
+    def __init__(self, crane: Crane, ranges: ChannelRanges) -> None:
+        self._moving, self.ways = AGAINST_SPEED * crane.speed_scale, WireWays(crane, ranges.speed)
+        self._doubt, self._time, self._shown = Doubt(WIRE_TIME), math.nan, math.nan
+        self._turned = self._passed = 0.0  # since a reading that was compared
+
+    def contradiction(self, sample: Sample, dt: float) -> str:
+        """What does not fit after `dt` s more, in words, '' for nothing."""
+        passed, step, ways = sample.time - self._time, abs(sample.wire_out - self._shown), self.ways
+        self._time, self._shown = sample.time, sample.wire_out
+        self._passed, self._turned = self._passed + passed, self._turned + sample.motor_speed * passed
+        ways.finest = min(ways.finest, step) if step > 0.0 else ways.finest
+        if not 0.0 <= passed <= LONGEST_SPAN:  # over a gap nobody knows how far it turned
+            ways.begin(sample.wire_out)
+            self._turned = self._passed = 0.0
+        elif self._passed >= WIRE_STEP and sample.wire_out != ways.last:
+            ways.compare(sample.time, sample.wire_out, sample.wire_layer, self._turned, self._passed)
+            self._turned = self._passed = 0.0
+        wrong = ways.wrong if abs(sample.motor_speed) > self._moving else None
+        return f"motor_speed contradicts wire_out: {ways.how}" if self._doubt.step(wrong, dt) else ""
 
 
 # -- a command beside a slow motion

@@ -10,15 +10,14 @@ from winch_friction.estimation import Estimate, EstimatorConfig, FrictionEstimat
 from winch_friction.estimation.answers import ParameterEstimate
 from winch_friction.estimation.interval import FrictionFunctions
 from winch_friction.estimation.sample import absent
-from winch_friction.online.agreement import DriveByItself
+from winch_friction.online.agreement import Agreement, DriveByItself
 from winch_friction.online.before_doubt import WIRE_UNSEEN, BeforeDoubt
 from winch_friction.online.compensator import LEARNED_AT
-from winch_friction.online.doubt import FORGOTTEN, LoadAgainstDrive, StandingReadings, span
+from winch_friction.online.doubt import FORGOTTEN, LoadAgainstDrive, StandingReadings, WireAgainstSpeed, span
 from winch_friction.online.inertia_balance import InertiaBalance
 from winch_friction.online.inputs import InputGate, ServiceOptions
 from winch_friction.online.load_balance import LoadBalance
 from winch_friction.online.torque_step import TorqueStep
-from winch_friction.online.wire_way import CommandAgainstSpeed, WireAgainstSpeed
 from winch_friction.physics.channels import SLOW_INPUTS
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.friction.term import needed
@@ -68,7 +67,7 @@ class EstimatorService:
         self._wire = WireAgainstSpeed(crane, self.inputs.ranges)
         self._drive = DriveByItself(crane, self.inputs.ranges)
         self._steps = TorqueStep(crane, self.inputs.ranges)
-        self._command = CommandAgainstSpeed(crane, self.inputs.ranges, LONGEST_LEAD, FORGOTTEN)
+        self._command = Agreement(crane, self.inputs.ranges, LONGEST_LEAD, calm=FORGOTTEN)
         self._taken_back = -math.inf  # s, of the doubt that stands
 
     def take(
@@ -118,7 +117,7 @@ class EstimatorService:
         passed = span(self._seen, sample.time)
         watches = self._load, self._still, self._wire, self._drive, self._steps
         watched = [each.contradiction(sample, passed) for each in watches]
-        beside = self._command.contradictions(sample, passed)
+        beside = self._command.beside(sample, passed)
         lost = next(filter(None, (*watched, *beside)), "")
         self._seen = sample.time
         gain = ""

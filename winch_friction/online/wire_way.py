@@ -1,5 +1,4 @@
-"""Whether the speed and the wire that is paid out are one motion: of one unit, one direction and one way; and whether
-the speed and its command are.
+"""Whether the speed and the wire that is paid out are one motion: of one unit, one direction and one way.
 
 A speed and a command that stand with noise, are both off by a zero error or have both lost their sign follow no wire,
 and no unit or direction can be told of them: the friction of one way was fed forward through every wave, for good.
@@ -10,11 +9,7 @@ from collections import deque
 from dataclasses import dataclass, field
 from itertools import pairwise
 
-from winch_friction.compensation.safe_output import AGAINST_SPEED, LONGEST_LAG
-from winch_friction.online.doubt import CALM, LONGEST_SPAN, Doubt, SlowWave
-from winch_friction.physics.signals import Sample
 from winch_friction.physics.winch.crane import Crane
-from winch_friction.physics.winch.operating_point import SPEED_APART, SPEED_SHARE, ChannelRanges
 
 # s that are looked at, in thirds: the mean over 13 s moves little with a wave, however slowly the counter follows it
 SPAN = 40.0
@@ -163,71 +158,3 @@ class WireWays:
         """How many times too large the speed seems where nobody says that the wire lies on an inner layer."""
         radii = self._crane.drum.layer_radii
         return max(radii) / min(radii) if layer != layer else 1.0
-
-
-# -- the speed and the wire that is paid out
-WIRE_STEP, WIRE_TIME = 1.0, 2.0  # s between readings that are compared (a counter has steps, is late); until it counts
-
-
-class WireAgainstSpeed:
-    """Whether the speed has the unit and the direction that the wire shows; a command of the same program has both."""
-
-    def __init__(self, crane: Crane, ranges: ChannelRanges) -> None:
-        self._moving, self.ways = AGAINST_SPEED * crane.speed_scale, WireWays(crane, ranges.speed)
-        self._doubt, self._time, self._shown = Doubt(WIRE_TIME), math.nan, math.nan
-        self._turned = self._passed = 0.0  # since a reading that was compared
-
-    def contradiction(self, sample: Sample, dt: float) -> str:
-        """What does not fit after `dt` s more, in words, '' for nothing."""
-        passed, step, ways = sample.time - self._time, abs(sample.wire_out - self._shown), self.ways
-        self._time, self._shown = sample.time, sample.wire_out
-        self._passed, self._turned = self._passed + passed, self._turned + sample.motor_speed * passed
-        ways.finest = min(ways.finest, step) if step > 0.0 else ways.finest
-        if not 0.0 <= passed <= LONGEST_SPAN:  # over a gap nobody knows how far it turned
-            ways.begin(sample.wire_out)
-            self._turned = self._passed = 0.0
-        elif self._passed >= WIRE_STEP and sample.wire_out != ways.last:
-            ways.compare(sample.time, sample.wire_out, sample.wire_layer, self._turned, self._passed)
-            self._turned = self._passed = 0.0
-        wrong = ways.wrong if abs(sample.motor_speed) > self._moving else None
-        return f"motor_speed contradicts wire_out: {ways.how}" if self._doubt.step(wrong, dt) else ""
-
-
-# -- the speed and its command
-SPEED_TIME = 0.5  # s that the command and the speed may be apart
-TURNS_SAID, APART_SAID = "speed_reference turns against motor_speed", "speed_reference contradicts motor_speed"
-
-
-class CommandAgainstSpeed:
-    """Whether the command and the speed are one motion; `lead` s: how far the command may be ahead of the speed; `calm`
-    s of agreement end a doubt, of which the slow part of each wave shows some whatever is wrong."""
-
-    def __init__(self, crane: Crane, ranges: ChannelRanges, lead: float = 0.0, calm: float = CALM) -> None:
-        self.lead, self._apart, self._moving = lead, SPEED_APART * ranges.speed, AGAINST_SPEED * crane.speed_scale
-        # messages in batches: a command that is right in one sample of each is none
-        self._turns, self._speeds = Doubt(LONGEST_LAG, calm, LONGEST_LAG), Doubt(SPEED_TIME, calm)
-        self._slow = SlowWave(self._moving)
-
-    def contradictions(self, sample: Sample, dt: float) -> tuple[str, ...]:
-        """What does not fit after `dt` s more, in words; a command of NaN fits everything."""
-        self._turns.patience = self.lead + LONGEST_LAG
-        found = (
-            TURNS_SAID if self._turns.step(self._turns_against(sample), dt) else "",
-            APART_SAID if self._speeds.step(self._speeds_differ(sample), dt) else "",
-            self._slow.contradiction(sample, dt),
-        )
-        return tuple(filter(None, found))
-
-    def _speeds_differ(self, sample: Sample) -> bool | None:
-        command, speed = sample.speed_reference, sample.motor_speed
-        large = max(abs(command), abs(speed))
-        if not large > self._apart:  # true for NaN
-            # too slow to contradict each other; but a doubt of before may be over, and no faster sea come for days
-            moves = large > self._moving
-            return False if self._speeds.stands and moves and abs(command - speed) <= SPEED_SHARE * large else None
-        return abs(command - speed) > SPEED_SHARE * large + self._apart
-
-    def _turns_against(self, sample: Sample) -> bool | None:
-        if not (abs(sample.motor_speed) > self._moving and abs(sample.speed_reference) > 0.0):  # NaN as well
-            return None
-        return sample.motor_speed * sample.speed_reference < 0.0

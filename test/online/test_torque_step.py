@@ -127,19 +127,37 @@ def test_what_steps_at_rest_is_a_brakes_or_a_valves() -> None:
     assert said(winch(), rests, begin=0.0, end=40.0) == {}
 
 
-def test_rest_and_other_motors_end_it() -> None:
+def stepped() -> tuple[TorqueStep, Sample]:
+    """A watch that tells a step, and the last sample."""
     own = TorqueStep(CRANE, ChannelRanges(CRANE))
     for sample in winch(22.0):
         if sample.time >= FROM:
             times("passive", "pressure_a", 1.1)(sample)
         words = own.contradiction(sample, 0.02)
     assert words
-    still = Sample(sample.time, 0.0, groups=sample.groups)
-    for _ in range(round(RESTED / 0.02) - 5):
-        assert own.contradiction(still, 0.02)
-    for _ in range(10):
-        words = own.contradiction(still, 0.02)
-    assert words == ""
+    return own, sample
+
+
+def test_a_rest_ends_it() -> None:
+    own, last = stepped()
+    still = Sample(last.time, 0.0, groups=last.groups)
+    said = [own.contradiction(still, 0.02) for _ in range(round(RESTED / 0.02) + 5)]
+    assert all(said[:-10])
+    assert said[-1] == ""
+
+
+def test_other_motors_end_it_and_a_gap_does_not() -> None:
+    own, last = stepped()
+    assert own.contradiction(Sample(last.time + 5.0, 50.0, groups=last.groups), 0.1)
+    main = {"main": GroupSample(100 * BAR, 25 * BAR, STROKE)}
+    assert own.contradiction(Sample(last.time + 5.02, 50.0, groups=main), 0.02) == ""
+
+
+def test_nothing_is_told_of_a_torque_that_is_missing() -> None:
+    own, last = stepped()
+    lost = {"active": last.groups["active"], "passive": GroupSample(math.nan, 25 * BAR, STROKE)}
+    assert own.contradiction(Sample(last.time + 0.02, 50.0, groups=lost), 0.02)
+    assert own.contradiction(Sample(last.time + 0.04, 50.0, groups=last.groups), 0.02)
 
 
 @pytest.mark.parametrize("cell", [math.nan, 55e3])

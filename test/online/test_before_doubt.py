@@ -151,3 +151,52 @@ def test_more_is_taken_back_where_a_doubt_joins_that_takes_longer_to_show(monkey
     service.contradiction = "cell"
     service._take_back(0.0)
     assert told[4:] == [0.0]
+
+
+def of_the_speed(sea: tuple[Sample, ...], begin: float, end: float, times: float) -> Iterator[Sample]:
+    """The sea from `begin` to `end` s, without wire and load cell, with a speed that is `times` what it is."""
+    for each in fed(sea, begin, end, 0.0):
+        yield replace(each, motor_speed=times * each.motor_speed, hook_load=math.nan, wire_out=math.nan)
+
+
+@pytest.mark.parametrize(("times", "said"), [(0.1, "contradicts"), (-1.0, "turns against")])
+def test_what_a_speed_that_its_command_contradicts_has_taught_is_taken_back(
+    sea: tuple[Sample, ...], times: float, said: str
+) -> None:
+    """The compensator let such a speed go; the estimator learned from it, and K2 stood 13.7 of its sigmas off."""
+    service = EstimatorService(CRANE, SEED, TOPICS)
+    published(service, of_the_speed(sea, 0.0, WRONG_FROM, 1.0))
+    assert not service.contradiction
+    published(service, of_the_speed(sea, WRONG_FROM, 60.0, times))
+    assert service.contradiction == f"speed_reference {said} motor_speed"
+    assert service.law.model().values == SEED.values  # within a minute there is nothing else to go back to
+    published(service, of_the_speed(sea, 60.0, 80.0, 1.0))
+    assert service.contradiction  # a part of each wave agrees, whatever is wrong
+
+
+def test_a_command_that_is_half_a_second_ahead_or_absent_stops_no_learning(sea: tuple[Sample, ...]) -> None:
+    service = EstimatorService(CRANE, SEED, TOPICS)
+    samples = list(of_the_speed(sea, 0.0, WRONG_FROM, 1.0))
+    for sample, ahead in zip(samples, samples[20:], strict=False):  # 0.4 s
+        service.take_row(replace(sample, speed_reference=ahead.speed_reference, groups=dict(sample.groups)))
+        assert not service.contradiction
+    for sample in of_the_speed(sea, WRONG_FROM, 60.0, 1.0):
+        service.take_row(replace(sample, speed_reference=math.nan))
+        assert not service.contradiction
+
+
+def test_once_a_doubt_is_over_the_load_is_as_uncertain_as_one_that_begins(sea: tuple[Sample, ...]) -> None:
+    """What was found of it meanwhile is of what was wrong: a tenth of a load was blamed on the friction, 6.5 sigmas."""
+    service = EstimatorService(CRANE, SEED, TOPICS)
+    published(service, of_the_speed(sea, 0.0, 30.0, 1.0))
+    service.contradiction = "a doubt"
+    service._take_back(0.0)
+    published(service, iter(()))
+    law = service.law
+    law._filter.P[LOAD, LOAD] = 0.0
+    service.contradiction = ""
+    service._take_back(0.0)
+    assert law._filter.P[LOAD, LOAD] == pytest.approx((law.config.load_std * law.drum_torque / CRANE.gear_ratio) ** 2)
+    law._filter.P[LOAD, LOAD] = 0.0
+    service._take_back(0.0)
+    assert law._filter.P[LOAD, LOAD] == 0.0

@@ -37,11 +37,9 @@ class Stamp(Enum):
 
 @dataclass
 class StampWatch:
-    """Judges the stamps of one input, s, by the steady clock, s.
-
-    A stray stamp is refused; a clock that was set is believed after `CONFIRMED_BY` messages that agree. `window` s: how
-    far a stamp may run ahead; `paced` False: stamps only need to advance, for time is simulated.
-    """
+    """Judges the stamps of one input, s, by the steady clock, s. A stray stamp is refused; a clock that was set is
+    believed after `CONFIRMED_BY` messages that agree. `window` s: how far a stamp may run ahead; `paced` False: stamps
+    only need to advance, for time is simulated."""
 
     window: float = 0.5
     paced: bool = True
@@ -132,11 +130,9 @@ LATENESS = 0.1  # s that a network may let a message be late by
 
 
 class Motions:
-    """Whether speed and command tell of two motions in turn: a recording or a simulator beside the machine.
-
-    Its stamps may be of the same clock or of another; nobody knows which of the two is the machine. The speed of a
-    coarse encoder turns to and fro as well, but its command is smooth and its stamps are good.
-    """
+    """Whether speed and command tell of two motions in turn: a recording or a simulator beside the machine. Its stamps
+    may be of the same clock or of another; nobody knows which of the two is the machine. The speed of a coarse encoder
+    turns to and fro as well, but its command is smooth and its stamps are good."""
 
     def __init__(self, ranges: ChannelRanges) -> None:
         self._reach, self._usual = ranges.speed, USUAL * ranges.speed
@@ -236,13 +232,13 @@ CHATTER_STEP, CHATTER_COUNT, CHATTER_TIME = 0.1, 4, 0.5  # jumps of this share o
 
 
 class Agreement:
-    """Cross-checks one sample after the other; says which inputs contradict each other.
+    """Cross-checks one sample after the other; says which inputs contradict each other. `lead` s: how far the command
+    may be ahead of the speed; `load` kg: the one that was set, where none is measured; `calm` s of agreement end a
+    doubt about the command: the slow part of each wave shows some, whatever is wrong."""
 
-    `lead` s: how far the command may be ahead of the speed; `load` kg: the one that was set, where none is measured.
-    """
-
-    def __init__(self, crane: Crane, ranges: ChannelRanges, lead: float = 0.0, load: float = math.nan) -> None:
-        self._crane, self._ranges, self.lead, self.load = crane, ranges, lead, load
+    def __init__(self, crane: Crane, ranges: ChannelRanges, lead: float = 0.0, load: float = math.nan,
+                 calm: float = Doubt.calm) -> None:  # fmt: skip
+        self._crane, self._ranges, self.lead, self.load, self._calm = crane, ranges, lead, load, calm
         self.forget()
 
     def forget(self) -> None:
@@ -250,26 +246,30 @@ class Agreement:
         self._time = self._now = self._command = self._step = math.nan
         self._jumps: list[float] = []
         crane, ranges = self._crane, self._ranges
-        self._speeds, self._load = Doubt(SPEED_TIME), LoadAgainstDrive(crane, ranges)
-        slow, standing = (kind(AGAINST_SPEED * crane.speed_scale) for kind in (SlowWave, StandingReadings))
-        self._watches = self._load, standing, WireAgainstSpeed(crane, ranges), DriveByItself(crane, ranges), slow
+        self._slow, standing = (kind(AGAINST_SPEED * crane.speed_scale) for kind in (SlowWave, StandingReadings))
+        self._load = LoadAgainstDrive(crane, ranges)
+        self._watches = self._load, standing, WireAgainstSpeed(crane, ranges), DriveByItself(crane, ranges)
         # messages in batches: a command that is right in one sample of each is none
-        self._turns = Doubt(LONGEST_LAG, forgiven=LONGEST_LAG)
+        self._speeds, self._turns = Doubt(SPEED_TIME, self._calm), Doubt(LONGEST_LAG, self._calm, LONGEST_LAG)
 
     def contradictions(self, sample: Sample, now: float = math.nan) -> tuple[str, ...]:
-        """What does not fit, in a few words each.
-
-        `now` s: when it came, by the steady clock; stamps that advance slowly must not stretch the patience.
-        """
+        """What does not fit, in a few words each. `now` s: when it came, by the steady clock; stamps that advance
+        slowly must not stretch the patience."""
         passed = (sample.time - self._time, now - self._now)
         dt = max(span(0.0, each) for each in passed) if self._time == self._time else 0.0
         self._time, self._now = sample.time, now
-        self._turns.patience, self._load.assumed = self.lead + LONGEST_LAG, self.load
+        self._load.assumed = self.load
+        watched = [each.contradiction(sample, dt) for each in self._watches]
+        jumps = "speed_reference jumps to and fro: two publishers?" if self._chatters(sample) else ""
+        return tuple(filter(None, (*self.beside(sample, dt), *watched, jumps)))
+
+    def beside(self, sample: Sample, dt: float) -> tuple[str, ...]:
+        """What of command and speed does not fit after `dt` s more, in a few words each."""
+        self._turns.patience = self.lead + LONGEST_LAG
         found = {
             "speed_reference turns against motor_speed": self._turns.step(self._turns_against(sample), dt),
             "speed_reference contradicts motor_speed": self._speeds.step(self._speeds_differ(sample), dt),
-            **{each.contradiction(sample, dt): True for each in self._watches},
-            "speed_reference jumps to and fro: two publishers?": self._chatters(sample),
+            self._slow.contradiction(sample, dt): True,
         }
         return tuple(name for name, stands in found.items() if name and stands)
 

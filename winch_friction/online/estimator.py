@@ -10,13 +10,14 @@ from winch_friction.estimation import Estimate, EstimatorConfig, FrictionEstimat
 from winch_friction.estimation.answers import ParameterEstimate
 from winch_friction.estimation.interval import FrictionFunctions
 from winch_friction.estimation.sample import absent
-from winch_friction.online.agreement import DriveByItself
+from winch_friction.online.agreement import Agreement, DriveByItself
 from winch_friction.online.before_doubt import WIRE_UNSEEN, BeforeDoubt
 from winch_friction.online.compensator import LEARNED_AT
-from winch_friction.online.doubt import LoadAgainstDrive, StandingReadings, WireAgainstSpeed, span
+from winch_friction.online.doubt import FORGOTTEN, LoadAgainstDrive, StandingReadings, WireAgainstSpeed, span
 from winch_friction.online.inertia_balance import InertiaBalance
 from winch_friction.online.inputs import InputGate, ServiceOptions
 from winch_friction.online.load_balance import LoadBalance
+from winch_friction.online.torque_step import TorqueStep
 from winch_friction.physics.channels import SLOW_INPUTS
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.friction.term import needed
@@ -26,6 +27,7 @@ from winch_friction.physics.winch.operating_point import sample_operating_point
 from winch_friction.records.sample_stream import InputHold
 from winch_friction.records.topics import Input, TopicMap
 
+LONGEST_LEAD = 0.4  # s that a command may be ahead of the speed: a slow pump; a longer patience costs nothing
 FASTEST_MODELS = 1.0  # s of the service's clock between two models, whatever the stamps say
 
 
@@ -64,6 +66,8 @@ class EstimatorService:
         self._still = StandingReadings(AGAINST_SPEED * crane.speed_scale)
         self._wire = WireAgainstSpeed(crane, self.inputs.ranges)
         self._drive = DriveByItself(crane, self.inputs.ranges)
+        self._steps = TorqueStep(crane, self.inputs.ranges)
+        self._command = Agreement(crane, self.inputs.ranges, LONGEST_LEAD, calm=FORGOTTEN)
         self._taken_back = -math.inf  # s, of the doubt that stands
 
     def take(
@@ -111,8 +115,10 @@ class EstimatorService:
         """A load that is far off is seen without the filter, which would take in none of its samples; and so is a gain
         that changed, which makes the filter reject what tells it."""
         passed = span(self._seen, sample.time)
-        watched = [each.contradiction(sample, passed) for each in (self._load, self._still, self._wire, self._drive)]
-        lost = next(filter(None, watched), "")
+        watches = self._load, self._still, self._wire, self._drive, self._steps
+        watched = [each.contradiction(sample, passed) for each in watches]
+        beside = self._command.beside(sample, passed)
+        lost = next(filter(None, (*watched, *beside)), "")
         self._seen = sample.time
         gain = ""
         if learned.accepted or math.isfinite(learned.innovation):
@@ -120,7 +126,9 @@ class EstimatorService:
         if learned.accepted:
             self._slow = self._balance.contradiction(self.law.load_apart, sample) or gain
         self.contradiction = lost or self._slow
-        self._take_back(math.inf if self._gain.from_the_beginning else WIRE_UNSEEN if watched[2] else 0.0)
+        self._take_back(
+            math.inf if self._gain.from_the_beginning else WIRE_UNSEEN if watched[2] or watched[4] or beside else 0.0
+        )
         self._before.step(sample.time, self._pending)
         self.law.set_enabled(self._enabled and not self.contradiction)
 
@@ -128,6 +136,8 @@ class EstimatorService:
         """Forget what a doubt that stands has taught: of the last `seconds` s besides what was doubted already. Once a
         doubt, and once more where another joins it that takes longer to show."""
         if not self.contradiction:
+            if self._taken_back >= 0.0:  # the load that was found meanwhile is of what was wrong
+                self.law.take_back(self._before.believed.content)
             self._taken_back = -math.inf
         elif seconds > self._taken_back:
             self._taken_back = seconds

@@ -30,7 +30,8 @@ from winch_friction.discrepancy.engine.chance import (
 )
 from winch_friction.discrepancy.engine.crossfit import CrossFit, Explanation, fitted, heads
 from winch_friction.discrepancy.engine.grammar import Factor, Law, Scored
-from winch_friction.discrepancy.engine.problem import Base, Layout, Problem, noise_of_run
+from winch_friction.discrepancy.engine.noise import noise_of_run
+from winch_friction.discrepancy.engine.problem import Base, Layout, Problem
 from winch_friction.discrepancy.engine.regions import find_regions
 from winch_friction.discrepancy.engine.selection import (
     Finding,

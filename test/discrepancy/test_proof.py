@@ -8,7 +8,7 @@ from scipy.stats import linregress
 
 from winch_friction.discrepancy import proof as module
 from winch_friction.discrepancy.engine.chance import Size
-from winch_friction.discrepancy.engine.coloured import Made
+from winch_friction.discrepancy.engine.noise import Made
 from winch_friction.discrepancy.preparation.prepare import PreparedRun
 from winch_friction.discrepancy.proof import adds, drift_note, drive_of, leaves_too_much, worse_runs
 from winch_friction.discrepancy.thresholds import LIMITS

@@ -15,7 +15,7 @@ from winch_friction.discrepancy.answer import Side
 from winch_friction.discrepancy.engine import FloatArray
 from winch_friction.discrepancy.engine.blocks import Blocks, RunBlocks, joined, run_blocks, segment_length
 from winch_friction.discrepancy.engine.chance import Size, chance_of_no_gain, rms, rms_with_interval
-from winch_friction.discrepancy.engine.problem import noise_of_run
+from winch_friction.discrepancy.engine.noise import noise_of_run
 from winch_friction.discrepancy.expansion import Given
 from winch_friction.discrepancy.preparation.prepare import PreparedRun
 from winch_friction.discrepancy.regressors import block_size, least_noise_of, timing_column

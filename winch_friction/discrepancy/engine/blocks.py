@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from winch_friction.discrepancy.engine import FloatArray
-from winch_friction.discrepancy.engine.coloured import Made
+from winch_friction.discrepancy.engine.noise import Made
 from winch_friction.discrepancy.thresholds import LIMITS
 
 AT_ONCE = 8  # columns, 12 MB over an hour at 50 Hz

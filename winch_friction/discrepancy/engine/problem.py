@@ -8,56 +8,15 @@ exact by active sets: an unconverged descent would corrupt held-out losses.
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 from scipy.linalg.lapack import dposv
-from scipy.special import gammaincinv
 
 from winch_friction.discrepancy.engine import FloatArray
 from winch_friction.discrepancy.engine.blocks import Blocks, Grams, RunBlocks, Slot, grams, joined
-from winch_friction.discrepancy.engine.coloured import Made, seen_of
+from winch_friction.discrepancy.engine.noise import noise_of_runs
 from winch_friction.discrepancy.thresholds import LIMITS
-
-# -- the noise of a record
-NOT_ZERO = 1e-300  # against a division by nothing, where nothing moves
-
-
-def noise_of_run(
-    values: FloatArray, position: np.ndarray, least: float = LIMITS.least_noise, skew: FloatArray | None = None,
-    made: Made | None = None,
-) -> float:  # fmt: skip
-    """Standard deviation of the block noise, same unit as `values`; `position` numbers the blocks on their grid.
-
-    A hundredth of what no balance closes better than, `least`, is as good as noise-free. `skew`, one column
-    or several, is what signals out of step leave in the values: in a quick sea it turns within the windows, no noise.
-    How blocks are `made` tells what the windows do not see of it.
-    """
-    floor = LIMITS.noise_floor * least
-    window, order = LIMITS.noise_window, LIMITS.noise_order
-    windows = _windows(values, position, window)
-    if len(windows) == 0:
-        simple = float(np.std(np.diff(values)) / np.sqrt(2.0)) if len(values) > 2 else 0.0
-        return max(simple, floor)
-    grid = np.vander(np.linspace(-1.0, 1.0, window), order + 1)
-    projector = np.eye(window) - grid @ np.linalg.pinv(grid)
-    freedom = window - order - 1
-    quick = windows @ projector
-    if skew is not None:
-        each = [_windows(column, position, window) @ projector for column in np.atleast_2d(skew.T)]
-        along = np.column_stack([own.ravel() / max(float(np.abs(own).max()), NOT_ZERO) for own in each])
-        quick = quick - (along @ np.linalg.lstsq(along, quick.ravel(), rcond=None)[0]).reshape(quick.shape)
-    variances = (quick**2).sum(axis=1) / freedom
-    # that quantile of chi-squared, per degree of freedom
-    expected = 2.0 * gammaincinv(0.5 * freedom, LIMITS.noise_quiet) / freedom
-    quiet = float(np.sqrt(np.quantile(variances, LIMITS.noise_quiet) / expected))
-    return max(quiet / seen_of(quick, projector, made), floor)
-
-
-def _windows(values: FloatArray, position: np.ndarray, window: int) -> FloatArray:
-    starts = range(0, len(values) - window + 1, window // 2)
-    found = [values[k : k + window] for k in starts if position[k + window - 1] - position[k] == window - 1]
-    return np.array(found)
-
 
 # -- least squares inside a box
 _TOLERANCE = 1e-10
@@ -258,17 +217,15 @@ def problem_of(
     """Gram matrices of these records; what candidates that are `known` already explain is not taken for noise. `x`: the
     columns of all records, where these stand together."""
     skews = [None if layout.base.skew is None else t.x[:, layout.base.skew] for t in tables]
-    noise = {k: noise_of_run(t.y, t.position, float(least_noise[k]), skews[k], t.made) for k, t in enumerate(tables)}
+    noises = partial(noise_of_runs, positions=[t.position for t in tables], made=[t.made for t in tables], skews=skews)
+    noise = dict(enumerate(noises([t.y for t in tables], least=least_noise)))
     blocks = joined(tables, noise, x)
     first = Problem(layout, blocks, grams(blocks), noise)
     # once more without what the base's own freedom explains, such as half a sample of skew while the oil column rings
     columns = np.asarray(first.columns(known))
     beta = first.fit(*first.grams.total(), first.columns(known))
     left = [t.y - np.ascontiguousarray(t.x[:, columns]) @ beta for t in tables]
-    again = {
-        k: min(noise[k], noise_of_run(left[k], t.position, float(least_noise[k]), skews[k], t.made))
-        for k, t in enumerate(tables)
-    }
+    again = {k: min(noise[k], each) for k, each in enumerate(noises(left, least=least_noise))}
     return replace(_reweighted(first, again), least_noise=least_noise)
 
 

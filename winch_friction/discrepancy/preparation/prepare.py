@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from scipy.ndimage import binary_opening, maximum_filter1d
 
-from winch_friction.discrepancy.engine.coloured import Made
+from winch_friction.discrepancy.engine.noise import Made
 from winch_friction.discrepancy.preparation.balance import SHOWS, SPARSEST, Accounted, Balance, Balancing, Groups
 from winch_friction.discrepancy.preparation.grid import SIMPSON, Grid, smoothing_of, spikes_of
 from winch_friction.discrepancy.preparation.seen import GroupSignals, Motion, Seen, see, shared

@@ -6,9 +6,8 @@ import numpy as np
 import pytest
 from scipy.signal import lfilter
 
-from winch_friction.discrepancy.engine import coloured
-from winch_friction.discrepancy.engine.coloured import Made, seen_of
-from winch_friction.discrepancy.engine.problem import noise_of_run
+from winch_friction.discrepancy.engine import noise as module
+from winch_friction.discrepancy.engine.noise import Made, noise_of_run, seen_of
 from winch_friction.discrepancy.preparation.grid import smooth
 from winch_friction.discrepancy.preparation.prepare import PreparedRun
 
@@ -64,7 +63,7 @@ def test_white_blocks_are_told_to_be_hardly_noisier_than_they_are():
 
 
 def test_blocks_of_which_nobody_says_how_they_are_made_are_white():
-    assert seen_of(np.ones((40, 12)), np.eye(12), None) == 1.0
+    assert seen_of(np.ones((40, 12)), None) == 1.0
 
 
 def test_how_a_block_is_made_adds_up_to_a_mean():
@@ -87,6 +86,28 @@ def test_few_windows_tell_the_weights_share_alone():
     projector = np.eye(12) - 1.0 / 12.0
     values = np.convolve(of(0.55, 400), AFTER_SIMPSON, "valid")
     many = np.lib.stride_tricks.sliding_window_view(values, 12)[::6] @ projector
-    few = many[: coloured.FEWEST_WINDOWS - 1]
-    assert seen_of(many, projector, made_of(0.2, 1)) < seen_of(few, projector, made_of(0.2, 1)) < 1.0
-    assert seen_of(few, projector, Made(1, (1.0,))) == pytest.approx(1.0)
+    few = many[: module.FEWEST_WINDOWS - 1]
+    assert seen_of(many, made_of(0.2, 1)) < seen_of(few, made_of(0.2, 1)) < 1.0
+    assert seen_of(few, Made(1, (1.0,))) == pytest.approx(1.0, abs=0.01)
+
+
+def test_short_runs_tell_together_how_their_noise_goes_on():
+    """Forty seconds each, one of them twice as loud: alone each would tell another colour, and weigh by chance."""
+    runs = [size * of(0.5, 200, seed) for seed, size in enumerate((0.3, 0.3, 0.6, 0.3, 0.3, 0.3, 0.3, 0.3))]
+    made = [made_of(0.04, 5)] * len(runs)
+    at = [np.arange(200)] * len(runs)
+    together = module.noise_of_runs(runs, at, [0.1] * len(runs), [None] * len(runs), made)
+    alone = [noise_of(run, made[0]) for run in runs]
+    white = np.array([noise_of(run) for run in runs])
+    assert np.ptp(white / together) == pytest.approx(0.0, abs=1e-9)
+    assert np.ptp(white / alone) > 0.05
+    assert np.median(together) == pytest.approx(0.3, rel=0.1)
+    assert together[2] > 1.5 * together[1]
+
+
+def test_a_log_of_another_rate_has_its_own_colour():
+    slow, quick = np.convolve(of(0.0, 3002), AFTER_SIMPSON, "valid"), of(0.0, 3000, 2)
+    found = module.noise_of_runs(
+        [slow, quick], [np.arange(3000)] * 2, [0.1] * 2, [None] * 2, [made_of(0.2, 1), made_of(0.04, 5)]
+    )
+    assert found == pytest.approx([np.std(slow), np.std(quick)], rel=0.06)

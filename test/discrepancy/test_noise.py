@@ -111,3 +111,12 @@ def test_a_log_of_another_rate_has_its_own_colour():
         [slow, quick], [np.arange(3000)] * 2, [0.1] * 2, [None] * 2, [made_of(0.2, 1), made_of(0.04, 5)]
     )
     assert found == pytest.approx([np.std(slow), np.std(quick)], rel=0.06)
+
+
+def test_a_loud_runs_quiet_windows_are_heard_beside_a_quiet_run():
+    """A still run of white noise, a tenth as loud, has all of the quieter half of the windows."""
+    runs = [0.03 * of(0.0, 800), *(0.3 * of(0.55, 200, seed) for seed in range(2, 10))]
+    made = [made_of(0.04, 5)] * len(runs)
+    at = [np.arange(len(run)) for run in runs]
+    together = module.noise_of_runs(runs, at, [0.01] * len(runs), [None] * len(runs), made)
+    assert noise_of(runs[1]) / together[1] < 0.85

@@ -1,10 +1,11 @@
 """The noise of a record, from the data alone: what a parabola over two seconds leaves of them.
 
 A parabola follows any friction, load or wave, and takes of twelve blocks a share that is known where their noise is
-white. What a transducer filters over a block and longer, or a winch makes so slowly, goes from one to the next, and a
-slow log has few samples in a block: its torque is smoothed as its speed is, and a mean over three of them, as the
-difference of that is. That is a first-order autoregression (Box and Jenkins, Time Series Analysis, chapter 3) behind
-weights that are known: how neighbours go together in what is left tells its correlation, and that the share.
+white. A slow log has few samples in a block: its torque is smoothed as its speed is, and a mean over three of them, as
+the difference of that is; a transducer's filter, longer than a sample, joins more. That is a first-order autoregression
+(Box and Jenkins, Time Series Analysis, chapter 3) behind weights that are known: how neighbours go together in what is
+left tells its correlation, and that the share. Of a quick log the same was tried and is not done: what the parabola
+leaves of an effect goes on as well, and of 150 drawn sets three lost their names for a floor 4 to 18 % higher.
 """
 
 from collections.abc import Sequence
@@ -24,8 +25,7 @@ NOT_ZERO, TINY = 1e-300, 1e-200  # against a division by nothing, where nothing 
 
 
 class Made(NamedTuple):
-    """How a block is made: `samples` apart from the next, of samples around it by their weights; one of many samples
-    counts as one."""
+    """How a block is made: `samples` apart from the next, of samples around it by their weights."""
 
     samples: int
     weights: tuple[float, ...]

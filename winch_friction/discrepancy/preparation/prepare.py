@@ -110,10 +110,10 @@ class PreparedRun:
         third of all that a run would hold, for one who asks once."""
         return self.model.jacobian(self.point, self.states)
 
-    def made(self, size: int) -> Made:
-        """How a block of `size` samples is made of them: those of a slow log share some with their neighbours."""
-        if self.dt <= SPARSEST:  # four samples and more make a block, which shares next to none
-            return Made(1, (1.0,))
+    def made(self, size: int) -> Made | None:
+        """How a block of `size` samples is made of those of a log so slow that neighbours share some."""
+        if self.dt <= SPARSEST:  # four samples and more make a block: its noise is as good as white
+            return None
         sample = np.convolve(smoothing_of(self.window), SIMPSON)
         return Made(size, tuple(np.convolve(sample, np.full(size, 1.0 / size)).tolist()))
 

@@ -7,6 +7,7 @@ import pytest
 
 from winch_friction.discrepancy.candidates import creep, families, feedback, friction, geometry, signals
 from winch_friction.discrepancy.candidates.candidate import ALL, BALANCING, Candidate, ParameterEstimate, Shape, Sides
+from winch_friction.discrepancy.catalogue import all_candidates
 from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.physics.channels import GRAVITY
 from winch_friction.physics.friction import Scope, term_named
@@ -34,6 +35,16 @@ def test_a_hydraulic_effect_may_show_where_one_run_has_pressures():
     runs = [SimpleNamespace(present=frozenset(), groups=groups) for groups in ((), ("main",))]
     assert Candidate("wave", "law", hydraulic=True).untestable(runs) is None
     assert Candidate("wave", "law", hydraulic=True).untestable(runs[:1]).needs == "pressures"
+
+
+@pytest.mark.parametrize(("name", "law", "opposing"), [
+    ("low_displacement_loss", "", True), ("low_displacement_loss", "low_displacement_each_way", False),
+    ("brake_drag", "", True), ("brake_drag", "brake_each_way", False), ("gear_asymmetry", "", False),
+    ("pressure_scale", "", False),
+])  # fmt: skip
+def test_what_drags_more_one_way_acts_one_way_in_part(name, law, opposing):
+    """Half of it adds to the load: at 5 Hz such a loss took the place of load cells that were off by chance."""
+    assert {each.opposing for each in all_candidates() if (each.name, each.law_name) == (name, law)} == {opposing}
 
 
 # -- what is late

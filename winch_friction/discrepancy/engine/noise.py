@@ -19,7 +19,7 @@ from winch_friction.discrepancy.engine import FloatArray
 from winch_friction.discrepancy.thresholds import LIMITS
 
 FEWEST_WINDOWS = 20  # fewer do not tell a correlation from none: then the kernel alone is known
-MOST = 0.6  # correlation from block to block, 0.4 s: slower filters than that are no transducer's
+MOST = 0.6  # correlation from sample to sample, 0.4 s at 5 Hz: slower filters than that are no transducer's
 DRAWS = 10_000  # windows: the shares to 1 %
 NOT_ZERO, TINY = 1e-300, 1e-200  # against a division by nothing, where nothing moves, and its square
 

@@ -1,5 +1,7 @@
 """What a load cell says of a mass that hangs still on the wire: one level, or several where a part was set down."""
 
+from itertools import pairwise
+
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 
@@ -18,7 +20,7 @@ def level_of(cell: FloatArray, slow: FloatArray, dt: float) -> FloatArray:
     size, lasts = max(round(EVERY / dt), 1), round(LASTS / EVERY)
     coarse = cell[: len(cell) // size * size].reshape(-1, size).mean(axis=1)
     cuts = [0, *(size * cut for cut in _changes(coarse, lasts)), len(cell)]
-    medians = [float(np.median(cell[a:b])) for a, b in zip(cuts, cuts[1:], strict=False)]
+    medians = [float(np.median(cell[a:b])) for a, b in pairwise(cuts)]
     level = np.repeat(medians, np.diff(cuts))
     half = size * lasts // 2
     for cut, *both in zip(cuts[1:-1], medians, medians[1:], strict=False):

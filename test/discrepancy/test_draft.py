@@ -120,13 +120,14 @@ def stepping(monkeypatch, misfits, step=1.0, priors=None):
 
     monkeypatch.setattr(repair, "_step", one_step)
 
-    def misfit(given):
+    def misfit(given, beside):
+        assert given is not beside, "both over the samples that both count"
         key = given if isinstance(given, str) else given.values
         if key not in known:
             known[key] = next(left)
         return known[key]
 
-    monkeypatch.setattr(repair, "_misfit", misfit)
+    monkeypatch.setattr(repair, "misfit", misfit)
     return repair.polished(Repair(model(), {}), model(), [], (), None).model
 
 
@@ -434,7 +435,7 @@ def test_polishing_fits_the_training_runs_and_reports_what_it_found(monkeypatch)
     )
     monkeypatch.setattr(repair, "meet_again", lambda now, runs, crane, tried: "then")
     monkeypatch.setattr(repair, "_step", lambda *_: (np.array([1.0]), 25.0 * np.eye(1), np.zeros(0)))
-    monkeypatch.setattr(repair, "_misfit", lambda given: {"now": 1.0, "then": 1.0}[given])
+    monkeypatch.setattr(repair, "misfit", lambda given, _: {"now": 1.0, "then": 1.0}[given])
     monkeypatch.setattr(repair, "_as_found", lambda best, drafted, seed: replace(best, name="as found"))
     monkeypatch.setattr(repair, "_reported", lambda best, seed: {best.model.name: {}})
     found = repair.polished(Repair(model(), {}, cut=("c",)), model(), ["runs"], ("a", "b"), "crane", "known")

@@ -232,7 +232,7 @@ def test_the_locked_runs_noise_has_no_delay_in_it_however_long():
         replace(crossfit(noise()).problem.blocks, run=0 * at, position=at),
         0,
         0.1,
-        SimpleNamespace(made=None),
+        None,
     )
     assert found == pytest.approx(1.0, rel=0.2)
 

@@ -104,6 +104,17 @@ def test_a_log_of_another_rate_has_its_own_colour():
     assert found == pytest.approx([np.std(slow), np.std(quick)], rel=0.06)
 
 
+def test_where_one_run_is_quick_the_noise_of_all_is_told_alike():
+    """The worm drive logs a creeping speed at 4 Hz and quick ones at 20 and more: told whole, the creeping ones counted
+    a fifth, and the curve that shows in them was no rival any more."""
+    slow, quick = of(0.5, 3000), of(0.5, 3000, 2)
+    at, made = [np.arange(3000)] * 2, [made_of(0.2, 1), made_of(0.05, 4)]
+    found = module.noise_of_runs([slow, quick], at, [0.1] * 2, [None] * 2, made)
+    assert found == [noise_of(slow), noise_of(quick)]
+    assert module.alike(made) == [None, None]
+    assert module.alike(made[:1]) == made[:1]
+
+
 def test_a_loud_runs_quiet_windows_are_heard_beside_a_quiet_run():
     """A still run of white noise, a tenth as loud, has all of the quieter half of the windows."""
     runs = [0.03 * of(0.0, 800), *(0.3 * of(0.55, 200, seed) for seed in range(2, 10))]

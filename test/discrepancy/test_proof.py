@@ -320,11 +320,15 @@ def test_two_models_are_compared_over_the_runs_that_were_asked(monkeypatch):
     )
     tables, asked = [], []
 
-    def noise_of(values, skew, _, k, least, table):
+    def noise_of(values, skew, _, k, least, made):
         asked.append((values.tolist(), skew.tolist()))
-        return noise[k] * (least == k + 1) * (table is tables[k])
+        return noise[k] * (least == k + 1) * (made is None)  # of the slow run as of the quick one
 
-    monkeypatch.setattr(module, "_blocks", lambda old, new, length: (old.name + old.of, new.name + new.of, length))
+    def blocks_of(old, new, length):
+        of = (old.name + old.of, new.name + new.of, length)
+        return SimpleNamespace(of=of, made=Made(1, (1.0,)) if old.name == "a" else None)
+
+    monkeypatch.setattr(module, "_blocks", blocks_of)
     monkeypatch.setattr(module, "joined", lambda own, weights: tables.extend(own) or (blocks if weights else None))
     monkeypatch.setattr(module, "segment_length", lambda total: total)
     monkeypatch.setattr(module, "least_noise_of", lambda old: least[old.name])
@@ -335,7 +339,10 @@ def test_two_models_are_compared_over_the_runs_that_were_asked(monkeypatch):
         for of in "12"
     )
     found = module.beside(before, after, ("c", "a"))
-    assert tables == [("a1", "a2", 4.0), ("c1", "c2", 4.0)]  # segments go with all of the runs' time
+    assert [each.of for each in tables] == [
+        ("a1", "a2", 4.0),
+        ("c1", "c2", 4.0),
+    ]  # segments go with all of the runs' time
     assert asked == [([1.0, 0.0, 0.0, 2.0], [9.0] * 4)] * 2  # noise is what the repaired model leaves
     assert [run.name for run in found.runs] == ["a", "c"]
     assert (found.before.tolist(), found.after.tolist()) == ([3.0, 0.0, 0.0, 4.0], [1.0, 0.0, 0.0, 2.0])
@@ -351,15 +358,15 @@ def test_noise_is_what_neither_a_late_signal_nor_its_change_leaves(monkeypatch):
     monkeypatch.setattr(module, "noise_of_run", lambda *each: asked.append(each) or 7.0)
     blocks = SimpleNamespace(run=np.array([0, 1, 1, 1]), position=np.array([5, 1, 2, 4]))
     values, skew = np.array([9.0, 1.0, 2.0, 3.0]), np.array([4.0, 0.0, 1.0, 4.0])
-    table = SimpleNamespace(made=Made(1, (1.0,)))
-    assert module._noise(values, skew, blocks, 1, 0.5, table) == 7.0
+    how = Made(1, (1.0,))
+    assert module._noise(values, skew, blocks, 1, 0.5, how) == 7.0
     own, position, least, late, made = asked[0]
-    assert made is table.made
+    assert made is how
     assert (own.tolist(), position.tolist(), least) == ([1.0, 2.0, 3.0], [1, 2, 4], 0.5)
     assert late.tolist() == [[0.0, 1.0], [1.0, 2.0], [4.0, 3.0]]
-    assert module._noise(values, skew, blocks, 0, 0.5, table) == 7.0
+    assert module._noise(values, skew, blocks, 0, 0.5, how) == 7.0
     assert asked[1][3].tolist() == [4.0]
-    assert module._noise(values, skew, blocks, 2, 0.5, table) == 0.0
+    assert module._noise(values, skew, blocks, 2, 0.5, how) == 0.0
 
 
 def test_the_loss_of_a_run_is_the_median_of_what_is_left_along_its_motion():

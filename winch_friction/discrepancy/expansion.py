@@ -125,6 +125,16 @@ def meet_again(before: Given, runs: Sequence[Run], crane: Crane, model: Friction
     return Given(right, own_crane, model, loads, found)
 
 
+def misfit(given: Given, beside: Given) -> float:
+    """RMS of the gap over each run's moving samples, in the units that its own drive gives it; of those samples that
+    the balance of `beside` counts as well, for a model that makes spikes of jerks would seem the better for it."""
+    own = []
+    for run, its in zip(given.prepared, beside.prepared, strict=True):
+        used = run.used & its.used_at(run.time + run.start)
+        own += [float(np.mean((run.gap[used] / run.unit_torque) ** 2))] if used.any() else []
+    return float(np.sqrt(np.mean(own))) if own else 0.0
+
+
 def met_in_turn(given: Given, model: FrictionModel, modes: Mapping[str, Mode]) -> Iterator[PreparedRun]:
     """The runs one after the other as another model sees them, with wires of these modes: all at once fill a memory."""
     right, own_crane = _corrected(given.runs, given.crane, model)

@@ -15,7 +15,7 @@ from winch_friction.discrepancy.answer import Side
 from winch_friction.discrepancy.engine import FloatArray
 from winch_friction.discrepancy.engine.blocks import Blocks, RunBlocks, joined, run_blocks, segment_length
 from winch_friction.discrepancy.engine.chance import Size, chance_of_no_gain, rms, rms_with_interval
-from winch_friction.discrepancy.engine.noise import noise_of_run
+from winch_friction.discrepancy.engine.noise import Made, alike, noise_of_run
 from winch_friction.discrepancy.expansion import Given
 from winch_friction.discrepancy.preparation.prepare import PreparedRun
 from winch_friction.discrepancy.regressors import block_size, least_noise_of, timing_column
@@ -142,8 +142,7 @@ def _left(side: Side, which: str, most: float) -> str:
 
 def worse_runs(side: Side, rng: np.random.Generator) -> tuple[str, ...]:
     """Locked runs whose gap grows significantly, beyond what matters to anybody and what is nothing by itself: where an
-    effect and what the base lacks cancelled, a run at its noise may stay at the floor and grow nevertheless.
-    """
+    effect and what the base lacks cancelled, a run at its noise may stay at the floor and grow nevertheless."""
     found = []
     # no chance smaller than that can come out of so many draws
     least = max(LIMITS.worse_p / max(len(side.runs), 1), 2.0 / LIMITS.bootstrap_draws)
@@ -208,7 +207,8 @@ def beside(before: Given, after: Given, names: Sequence[str]) -> Side:
     blocks = joined(tables, dict.fromkeys(range(len(pairs)), 1.0))
     y_before, y_after, skew = blocks.y, *blocks.x.T
     least = np.array([least_noise_of(old) for old, _ in pairs])
-    noise = np.array([_noise(y_after, skew, blocks, k, least[k], t) for k, t in enumerate(tables)])
+    made = enumerate(alike([table.made for table in tables]))
+    noise = np.array([_noise(y_after, skew, blocks, k, least[k], each) for k, each in made])
     floor, closes = (rms(each[blocks.run]) if len(pairs) else 0.0 for each in (noise, least))
     torque, untold = np.array([drive_of(old) for old, _ in pairs])[blocks.run], Size(np.nan, (np.nan, np.nan))
     return Side(
@@ -230,14 +230,14 @@ def _blocks(old: PreparedRun, new: PreparedRun, length: float) -> RunBlocks:
     return run_blocks(old.time, own_gap, columns, used, old.direction, old.channels, size, length, made=old.made(size))
 
 
-def _noise(values: FloatArray, skew: FloatArray, blocks: Blocks, k: int, least: float, of: RunBlocks) -> float:
-    """Independent noise of one run, in the gap's unit."""
+def _noise(values: FloatArray, skew: FloatArray, blocks: Blocks, k: int, least: float, made: Made | None) -> float:
+    """Independent noise of one run, whose blocks are `made` so, in the gap's unit."""
     own = blocks.run == k
     if not own.any():
         return 0.0
     # what is late by more than a little leaves the skew's own change as well
     late = np.column_stack([skew[own], np.gradient(skew[own])]) if own.sum() > 1 else skew[own]
-    return noise_of_run(values[own], blocks.position[own], least, late, of.made)
+    return noise_of_run(values[own], blocks.position[own], least, late, made)
 
 
 def drive_of(run: PreparedRun) -> float:

@@ -22,7 +22,7 @@ from winch_friction.discrepancy.engine import FloatArray
 from winch_friction.discrepancy.engine.blocks import Slot
 from winch_friction.discrepancy.engine.crossfit import CrossFit, Explanation
 from winch_friction.discrepancy.estimates import InFile, agreed, estimates_of, in_file, of_part, together
-from winch_friction.discrepancy.expansion import Given, meet, meet_again, with_room
+from winch_friction.discrepancy.expansion import Given, meet, meet_again, misfit, with_room
 from winch_friction.discrepancy.regressors import base_of, build_problem, correction_std, key_of, layout_of
 from winch_friction.discrepancy.search import Search
 from winch_friction.discrepancy.thresholds import LIMITS
@@ -192,8 +192,8 @@ def polished(
 
     All runs are prepared at first, for all of them decide whether their wire gives, and by fewer it may be otherwise.
     The draft comes from a linear problem around the seed: melted curves, pressures that depend on what was found and
-    shapes from a grid leave a second order, which Gauss-Newton steps on the model take away, as long as they shrink the
-    gap. The covariance is the last fit's, wider where more than noise is left.
+    shapes from a grid leave a second order, which Gauss-Newton steps on the model take away, while they shrink the gap.
+    The covariance is the last fit's, wider where more than noise is left.
     """
     best = drafted
     now = meet(runs, crane, best.model, train, known).only(train)
@@ -203,9 +203,9 @@ def polished(
         for share in (1.0, 0.5, 0.25):
             tried = _stepped(best.model, share * step, covariance, deviations)
             new = meet_again(now, runs, crane, tried)
-            if LIMITS.worth_polishing * _misfit(new) <= _misfit(now):
+            if LIMITS.worth_polishing * misfit(new, now) <= misfit(now, new):
                 break  # else it went too far, as the width of a curve from a grid may
-        if _misfit(new) > LIMITS.worth_polishing * _misfit(now):
+        if misfit(new, now) > LIMITS.worth_polishing * misfit(now, new):
             # no better, but the uncertainty is this fit's all the same
             best = replace(best, model=_stepped(best.model, np.zeros_like(step), covariance, deviations))
             break
@@ -272,12 +272,6 @@ def _stepped(model: FrictionModel, step: FloatArray, covariance: FloatArray, dev
     least = np.diag(np.maximum(np.diag(covariance), [(1e-9 * abs(p.typical)) ** 2 for p in model.parameters]))
     covariance = covariance - np.diag(np.diag(covariance)) + least
     return replace(model.with_values(list(values)), covariance=covariance if count else None, corrections=corrections)
-
-
-def _misfit(given: Given) -> float:
-    """RMS of the gap over each run's moving samples, in units that its own drive gives it."""
-    own = [float(np.mean((run.gap[run.used] / run.unit_torque) ** 2)) for run in given.prepared if run.used.any()]
-    return float(np.sqrt(np.mean(own))) if own else 0.0
 
 
 def _reported(best: Repair, seed: FrictionModel) -> dict[str, dict[str, ParameterEstimate]]:

@@ -33,6 +33,46 @@ def grammar(gap, shift=0.0, most=2.0, weight=4.0):
     return Grammar(cross, cross.explain(()), np.full(len(AT), TORQUE), DIRECTION, MEMBERS)
 
 
+DEPTH = 70.0 * RUN + 8.0 * np.sin(AT / 9.0)  # m of wire: each run goes up and down by a few, deep below the one before
+
+
+@pytest.mark.parametrize("weight", [1.0, 4.0])
+def test_a_wave_takes_what_it_is_with_its_phase_whatever_the_level_of_each_record(weight):
+    """Three of a wave of 9 m, beside a friction of another size in each run."""
+    wave = 3.0 * np.sin(2.0 * np.pi * DEPTH / 9.0 + 0.7)
+    search = grammar(TORQUE * DIRECTION * (wave + 5.0 * RUN), weight=weight)
+    gains, sines, cosines = search.periodic(DEPTH, np.array([1.0 / 9.0, 1.0 / 9.4]), apart=False)
+    assert np.hypot(sines[0], cosines[0]) == pytest.approx(3.0, rel=1e-4)
+    assert np.arctan2(cosines[0], sines[0]) == pytest.approx(0.7, abs=1e-4)
+    level = sum(np.sum((wave[k == RUN] - wave[k == RUN].mean()) ** 2) for k in range(RUNS))
+    assert gains[0] == pytest.approx((weight * TORQUE) ** 2 * level, rel=1e-3)
+    assert gains[1] < 0.7 * gains[0]
+
+
+def test_apart_each_record_has_a_phase_of_its_own():
+    search = grammar(TORQUE * DIRECTION * np.sin(2.0 * np.pi * DEPTH / 9.0 + 2.0 * RUN))
+    frequency = np.array([1.0 / 9.0])
+    together, apart = (search.periodic(DEPTH, frequency, apart=each)[0][0] for each in (False, True))
+    assert together < 0.5 * apart
+
+
+def test_waves_are_looked_at_in_parts_where_all_at_once_would_fill_a_memory(monkeypatch):
+    search = grammar(TORQUE * DIRECTION * np.sin(DEPTH))
+    frequencies = np.linspace(0.05, 0.5, 40)
+    whole = search.periodic(DEPTH, frequencies, apart=False)
+    monkeypatch.setattr(module, "AT_ONCE", 5 * len(AT))
+    sizes, moments = [], Grammar._moments
+
+    def counted(carrier, left, x, own):
+        sizes.append(len(own))
+        return moments(carrier, left, x, own)
+
+    monkeypatch.setattr(Grammar, "_moments", staticmethod(counted))
+    for each, of_all in zip(search.periodic(DEPTH, frequencies, apart=False), whole, strict=True):
+        assert each == pytest.approx(of_all, rel=1e-9)
+    assert max(sizes) <= 5
+
+
 @pytest.mark.parametrize(
     ("law", "column"),
     [
@@ -113,6 +153,32 @@ def test_a_torque_of_one_direction_is_found_as_surely_as_a_friction(opposing):
     assert (best.law, best.amount) == (Law((WIRES,), opposing=opposing), pytest.approx(3.0, rel=1e-6))
 
 
+def test_what_is_multiplied_has_had_its_constants_moved_first():
+    """The hump stands at 2.5, which the grid has not; its product with the layer is that of the moved one."""
+
+    def made(c):
+        return np.exp(-(((WIRE - c) / 0.2) ** 2))
+
+    def hump(c):
+        return Factor("hump", "wire_out", (("c", c),))
+
+    search = grammar(TORQUE * DIRECTION * made(2.5) * LEVEL)
+
+    def fit(each):
+        if each.law.factors[0].kind != "hump":
+            return each, {}
+        moved = search.screened(Law((hump(2.5),), each.law.opposing), own := {hump(2.5): made(2.5)[None]})
+        return moved, own
+
+    values = {WIRES: WIRE[None], LEVELS: LEVEL[None], hump(2.2): made(2.2)[None], hump(2.8): made(2.8)[None]}
+    best = search.search(values, fit)[0]
+    assert best.law.factors == (LEVELS, hump(2.5))
+    assert best.inside == pytest.approx(0.0, abs=1e-6)
+    assert search.search(values)[0].inside > 1.0
+    kept = [each.law for each in search.search(values, fit) if len(each.law.factors) == 1 and each.law.opposing]
+    assert {law.factors[0].kind for law in kept if law.signals == ("wire_out",)} == {"hump", "linear"}
+
+
 def test_laws_stand_by_what_they_leave_of_runs_that_they_were_not_fitted_to():
     gap = TORQUE * np.random.default_rng(2).normal(size=len(AT)) * np.where(RUN == 2, 5.0, 1.0)
     found = grammar(gap).search(VALUES)
@@ -124,7 +190,9 @@ def test_laws_stand_by_what_they_leave_of_runs_that_they_were_not_fitted_to():
 
 def test_a_product_with_what_differs_by_group_acts_once_per_motor_whichever_factor_comes_first(monkeypatch):
     """From the wire's length on, alone: the pressures are what makes it one per motor."""
-    only = lambda scored, most: [each for each in scored if each.law.factors[0] is WIRES or len(each.law.factors) > 1]
+    only = lambda scored, most, **_: [
+        each for each in scored if each.law.factors[0] is WIRES or len(each.law.factors) > 1
+    ]
     monkeypatch.setattr(module, "_best_of_each", only)
     search, tried = grammar(TORQUE * WIRE), []
     screened = search.screened

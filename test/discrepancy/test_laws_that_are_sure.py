@@ -32,7 +32,7 @@ def scored(law, loss, scatter=0.0):
 
 def sure_laws(monkeypatch, *ranked):
     """Of laws that a search of the grammar has found, the best first."""
-    monkeypatch.setattr(module, "Grammar", lambda *_: SimpleNamespace(search=lambda _: list(ranked)))
+    monkeypatch.setattr(module, "Grammar", lambda *_: SimpleNamespace(search=lambda *_: list(ranked)))
     monkeypatch.setattr(module, "_tuned", lambda _, each, *__: each)
     monkeypatch.setattr(module, "WORDS", ())
     blocks = SimpleNamespace(run=np.zeros(3, int), y=np.zeros(3), direction=np.ones(3))
@@ -68,6 +68,32 @@ def test_a_law_that_helps_half_of_the_segments_and_harms_the_others_is_not_sure(
 
 def test_nothing_found_is_nothing_sure(monkeypatch):
     assert sure_laws(monkeypatch) == []
+
+
+@pytest.mark.parametrize("closely", [False, True])
+def test_a_proposal_is_looked_at_closer_than_what_a_name_is_held_against(monkeypatch, closely):
+    asked, moved = [], Law((Factor("step", "wire_out", (("c", 9.0),)),), opposing=True)
+    blocks = SimpleNamespace(run=np.zeros(3, int), y=np.zeros(3), direction=np.ones(3))
+    cross = SimpleNamespace(
+        problem=SimpleNamespace(blocks=blocks), explain=lambda _: explained((), BEFORE), floor=FLOOR
+    )
+    runs = [SimpleNamespace(name="a", unit_torque=2.0, groups=(), time=np.array([0.0, 60.0]))]
+    found = SimpleNamespace(search=lambda values, fit: asked.append((values, fit)) or [scored(SHORT, 700.0)])
+    monkeypatch.setattr(module, "Grammar", lambda *_: found)
+    monkeypatch.setattr(module, "WORDS", ())
+    monkeypatch.setattr(module, "closer", lambda *_: ["closer"])
+    monkeypatch.setattr(module, "evaluated", lambda wanted, *_: wanted)
+    monkeypatch.setattr(module, "_tuned", lambda _, each, *__: each)
+    monkeypatch.setattr(module, "fitted", lambda _, each, runs, most: (scored(moved, 650.0), {}))
+    search = SimpleNamespace(cross=cross, expansion=SimpleNamespace(runs=runs))
+    if closely:
+        laws = [each.law for each, _ in module._laws(search, runs, np.random.default_rng(0))]
+    else:
+        laws = [each.law for each in module.near_laws(search, ("a",), np.random.default_rng(0))]
+    ((values, fit),) = asked
+    assert values == (["closer"] if closely else [])
+    assert (fit is not None) is closely
+    assert laws == [moved if closely else SHORT]
 
 
 def test_no_more_laws_are_looked_at_closer_than_so_many(monkeypatch):

@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from winch_friction.discrepancy import proposals
+from winch_friction.discrepancy import proposals, vocabulary
 from winch_friction.discrepancy.answer import AMBIGUOUS, MISSING, NOTHING, UNEXPLAINED, Verdict
 from winch_friction.discrepancy.candidates.candidate import ParameterEstimate
 from winch_friction.discrepancy.engine.grammar import Factor, Law, Scored
@@ -105,20 +105,20 @@ ONE, TWO = run([-1.0, 2.0, -5.0], [1, 0, 1], drop=(1e7, -3e7)), run([4.0, 9.0], 
 
 def test_a_word_has_seen_what_moved_and_of_groups_their_mean():
     speed, pressure, wire = (BY_NAME[name] for name in ("motor_speed", "pressure", "wire_out"))
-    assert proposals._covered(speed, [ONE, TWO]).tolist() == [1.0, 5.0, 4.0]
-    assert proposals._covered(pressure, [ONE, TWO]).tolist() == [2e7, 2e7]  # the other has no group
-    assert proposals._covered(pressure, [TWO]).tolist() == []
+    assert vocabulary.covered(speed, [ONE, TWO]).tolist() == [1.0, 5.0, 4.0]
+    assert vocabulary.covered(pressure, [ONE, TWO]).tolist() == [2e7, 2e7]  # the other has no group
+    assert vocabulary.covered(pressure, [TWO]).tolist() == []
     told, silent = (run([1.0, 1.0], [1, 1], **known) for known in ({"wire_out": np.array([3.0, 4.0])}, {}))
-    assert proposals._covered(wire, [told, told]).tolist() == [3.0, 4.0, 3.0, 4.0]
-    assert proposals._covered(wire, [told, silent]).tolist() == []  # a run that lacks it says nothing of it
+    assert vocabulary.covered(wire, [told, told]).tolist() == [3.0, 4.0, 3.0, 4.0]
+    assert vocabulary.covered(wire, [told, silent]).tolist() == []  # a run that lacks it says nothing of it
 
 
 def test_a_factor_of_the_groups_has_a_row_for_each_of_the_most_there_are():
     speed, above = Factor("linear", "motor_speed"), Factor("above", "motor_speed", (("c", 1.5),))
     square = Factor("square", "pressure")
-    rows = [each.tolist() for each in proposals._columns([speed, above], [square], ONE, 3)]
+    rows = [each.tolist() for each in vocabulary._columns([speed, above], [square], ONE, 3)]
     assert rows == [[1.0, 2.0, 5.0], [0.0, 0.5, 3.5], [1e14] * 3, [9e14] * 3, [0.0] * 3]
-    lag = next(proposals._columns([Factor("lag", "motor_speed", (("c", 2.0),))], [], TWO, 0))
+    lag = next(vocabulary._columns([Factor("lag", "motor_speed", (("c", 2.0),))], [], TWO, 0))
     assert lag[0] < 9.0
     assert 4.0 <= lag[1] < 6.0  # a quarter of the way in half a second of two
 
@@ -130,16 +130,16 @@ def test_evaluated_factors_are_in_their_own_rows_over_the_blocks_of_all_runs(mon
         asked.append((len(time), used.tolist(), size, length))
         return SimpleNamespace(x=np.column_stack([np.asarray(each)[:1] for each in columns]))
 
-    monkeypatch.setattr(proposals, "run_blocks", blocks)
-    monkeypatch.setattr(proposals, "block_size", lambda own: len(own.time))
-    monkeypatch.setattr(proposals, "segment_length", lambda total: total)
+    monkeypatch.setattr(vocabulary, "run_blocks", blocks)
+    monkeypatch.setattr(vocabulary, "block_size", lambda own: len(own.time))
+    monkeypatch.setattr(vocabulary, "segment_length", lambda total: total)
     speed, square, linear = Factor("linear", "motor_speed"), Factor("square", "pressure"), Factor("linear", "pressure")
-    found = proposals._evaluated([square, speed, linear], [ONE, TWO], 2)
+    found = vocabulary.evaluated([square, speed, linear], [ONE, TWO], 2)
     assert found[speed].tolist() == [[1.0, 4.0]]
     assert found[square].tolist() == [[1e14, 0.0], [9e14, 0.0]]
     assert found[linear].tolist() == [[1e7, 0.0], [3e7, 0.0]]
     assert asked == [(3, [True, False, True], 3, 1.5), (2, [True, False], 2, 1.5)]
-    assert proposals._evaluated([], [ONE], 2) == {}
+    assert vocabulary.evaluated([], [ONE], 2) == {}
 
 
 def test_a_search_of_laws_knows_each_runs_unit_and_its_motors(monkeypatch):
@@ -147,14 +147,14 @@ def test_a_search_of_laws_knows_each_runs_unit_and_its_motors(monkeypatch):
 
     def grammar(cross, base, torque, direction, members):
         asked.update(torque=torque.tolist(), members=members.tolist(), direction=direction)
-        return SimpleNamespace(search=lambda values: [])
+        return SimpleNamespace(search=lambda values, fit: [] if fit is None else None)
 
     monkeypatch.setattr(proposals, "Grammar", grammar)
-    monkeypatch.setattr(proposals, "_covered", lambda word, runs: word.name)
+    monkeypatch.setattr(proposals, "covered", lambda word, runs: word.name)
     kinds = {"motor_speed": ("linear", "step"), "pressure": ("root",)}
     monkeypatch.setattr(proposals, "factors", lambda word, seen: [Factor(k, word.name) for k in kinds.get(seen, ())])
     monkeypatch.setattr(
-        proposals, "_evaluated", lambda words, runs, most: asked.update(words=words, most=most, runs=runs)
+        proposals, "evaluated", lambda words, runs, most: asked.update(words=words, most=most, runs=runs)
     )
     blocks = SimpleNamespace(run=np.array([0, 1, 1]), y=np.zeros(3), direction="ways")
     cross = SimpleNamespace(
@@ -173,7 +173,7 @@ def test_a_search_of_laws_knows_each_runs_unit_and_its_motors(monkeypatch):
 
 # -- constants moved to the fit
 def test_constants_move_to_where_the_law_fits_best_but_a_counts_do_not(monkeypatch):
-    monkeypatch.setattr(proposals, "_evaluated", lambda factors, runs, most: tuple(factors))
+    monkeypatch.setattr(proposals, "evaluated", lambda factors, runs, most: tuple(factors))
 
     def inside(law):
         at = dict(law.factors[0].constants)

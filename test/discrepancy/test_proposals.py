@@ -12,17 +12,9 @@ from campaign.rig import make_dataset, write_csv
 from winch_friction.cli.main import run as winch_friction
 from winch_friction.discrepancy import proposals, vocabulary
 from winch_friction.discrepancy.engine.grammar import Factor, Law
+from winch_friction.discrepancy.law_as_term import amount_in_words, declare, in_words
 from winch_friction.discrepancy.proposals import explained
-from winch_friction.discrepancy.vocabulary import (
-    BY_NAME,
-    TEXTS,
-    WORDS,
-    amount_in_words,
-    declare,
-    factors,
-    in_words,
-    shape,
-)
+from winch_friction.discrepancy.vocabulary import BY_NAME, TEXTS, WORDS, factors, shape
 from winch_friction.physics.channels import dimension_of, product
 from winch_friction.physics.friction import FrictionModel, symbols
 from winch_friction.physics.friction.compiled import layout

@@ -3,8 +3,9 @@
 A proposal says on what the gap depends and how, with amounts and units, so that it shrinks; not what it is.
 """
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -12,28 +13,17 @@ import numpy as np
 from winch_friction.discrepancy.answer import AMBIGUOUS, MISSING, UNEXPLAINED, Verdict
 from winch_friction.discrepancy.candidates.candidate import ParameterEstimate
 from winch_friction.discrepancy.candidates.friction import friction_candidate
-from winch_friction.discrepancy.engine import FloatArray
-from winch_friction.discrepancy.engine.blocks import run_blocks, segment_length
+from winch_friction.discrepancy.closer_laws import closer, fitted
 from winch_friction.discrepancy.engine.crossfit import flip_p_values
-from winch_friction.discrepancy.engine.grammar import Factor, Grammar, Scored
+from winch_friction.discrepancy.engine.grammar import Grammar, Scored
 from winch_friction.discrepancy.engine.selection import Finding, Selection
 from winch_friction.discrepancy.expansion import expand_around
+from winch_friction.discrepancy.law_as_term import ProposedTerm, amount_in_words, declare, in_words
 from winch_friction.discrepancy.preparation.prepare import PreparedRun
 from winch_friction.discrepancy.proof import Side, Trial, adds, fits_only_its_own, left_beside_a_refit, unproven
-from winch_friction.discrepancy.regressors import block_size
 from winch_friction.discrepancy.search import Search
 from winch_friction.discrepancy.thresholds import LIMITS
-from winch_friction.discrepancy.vocabulary import (
-    BY_NAME,
-    WORDS,
-    ProposedTerm,
-    Word,
-    amount_in_words,
-    declare,
-    factors,
-    in_words,
-    shape,
-)
+from winch_friction.discrepancy.vocabulary import BY_NAME, WORDS, covered, evaluated, factors
 from winch_friction.physics.channels import beside
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.friction.term import known_for_now
@@ -143,14 +133,16 @@ def near_laws(
 def _laws(search: Search, runs: Sequence[PreparedRun], rng: np.random.Generator) -> list[tuple[Scored, float]]:
     """The best law and those that are answers of their own beside it, with their chances."""
     before = search.cross.explain(()).loss
-    sure = _sure_laws(search, runs, rng)
+    sure = _sure_laws(search, runs, rng, closely=True)
     return [pair for pair in sure if pair is sure[0] or _another(pair[0], sure[0][0], before)]
 
 
 def _sure_laws(
-    search: Search, runs: Sequence[PreparedRun], rng: np.random.Generator, without: Sequence[str] = ()
-) -> list[tuple[Scored, float]]:
-    """Laws that come near the best on held-out segments, significantly; the simplest first."""
+    search: Search, runs: Sequence[PreparedRun], rng: np.random.Generator, without: Sequence[str] = (),
+    closely: bool = False,
+) -> list[tuple[Scored, float]]:  # fmt: skip
+    """Laws that come near the best on held-out segments, significantly; the simplest first. `closely`: with constants
+    between those of the grid."""
     cross, base = search.cross, search.cross.explain(())
     blocks = cross.problem.blocks
     torque = np.array([1.0 / run.unit_torque for run in runs])[blocks.run]
@@ -160,15 +152,16 @@ def _sure_laws(
         for g, group in enumerate(run.groups):
             members[g, blocks.run == k] = group.count
     grammar = Grammar(cross, base, torque, blocks.direction, members)
-    words = [f for word in WORDS for f in factors(word, _covered(word, runs)) if f.kind not in without]
-    values = _evaluated(words, runs, most)
-    ranked = grammar.search(values)
+    words = [f for word in WORDS for f in factors(word, covered(word, runs)) if f.kind not in without]
+    values = evaluated([*words, *(closer(grammar, runs, most) if closely else ())], runs, most)
+    fit = partial(fitted, grammar, runs=runs, most=most)
+    ranked = grammar.search(values, fit if closely else None)
     excess = max(base.loss - cross.floor, 1e-9)
     if not ranked or base.loss - ranked[0].loss < LIMITS.proposal_gain * excess:
         return []
     best = base.loss - ranked[0].loss
     near = [each for each in ranked if base.loss - each.loss >= LIMITS.proposal_share * best]
-    near = [_tuned(grammar, each, runs, most) for each in near[: LIMITS.grammar_judged]]
+    near = [fit(each)[0] if closely else _tuned(grammar, each, runs, most) for each in near[: LIMITS.grammar_judged]]
     p_values = flip_p_values(np.array([base.losses - each.losses for each in near]), rng)
     sure = [(each, float(p)) for each, p in zip(near, p_values, strict=True) if p <= LIMITS.remainder_p]
     sure.sort(key=lambda pair: _order(pair[0], base.loss))
@@ -199,60 +192,11 @@ def _tuned(grammar: Grammar, scored: Scored, runs: Sequence[PreparedRun], most: 
                     constants = (*factor.constants[:j], (name, float(f"{trial:.4g}")), *factor.constants[j + 1 :])
                     other = replace(factor, constants=constants)
                     law = replace(best.law, factors=(*best.law.factors[:k], other, *best.law.factors[k + 1 :]))
-                    judged = grammar.screened(law, _evaluated(law.factors, runs, most))
+                    judged = grammar.screened(law, evaluated(law.factors, runs, most))
                     if judged.inside < best.inside:
                         best, factor = judged, other
         step *= 0.5
-    return grammar.judged(best, _evaluated(best.law.factors, runs, most))
-
-
-def _covered(word: Word, runs: Sequence[PreparedRun]) -> FloatArray:
-    """What the moving samples have seen of a signal; empty where a run lacks it."""
-    if word.needs and any(word.needs not in run.channels for run in runs):
-        return np.array([])
-    parts = [np.mean(_signals(word, run), axis=0)[run.used] for run in runs if word.of_run or run.groups]
-    return np.concatenate(parts) if parts else np.array([])
-
-
-def _signals(word: Word, run: PreparedRun) -> FloatArray:
-    """The signal per member, (members, samples), or (1, samples) where it is the same for all."""
-    if word.of_run is not None:
-        return np.atleast_2d(np.broadcast_to(word.of_run(run), run.time.shape))
-    assert word.of_group is not None
-    own = [np.broadcast_to(word.of_group(group), run.time.shape) for group in run.groups]
-    return np.array(own) if own else np.zeros((1, len(run.time)))
-
-
-def _columns(single: Sequence[Factor], grouped: Sequence[Factor], run: PreparedRun, most: int) -> Iterator[FloatArray]:
-    """One factor after the other along a run, those of the motor groups once for each of `most` groups."""
-    signals = {name: _signals(BY_NAME[name], run) for name in {f.signal for f in (*single, *grouped)}}
-    for f in single:
-        yield shape(f.kind, signals[f.signal][0], dict(f.constants), run.dt)
-    for f in grouped:
-        own = signals[f.signal]
-        for row in own:
-            yield shape(f.kind, row, dict(f.constants), run.dt)
-        for _ in range(most - len(own)):
-            yield np.zeros(len(run.time))
-
-
-def _evaluated(wanted: Sequence[Factor], runs: Sequence[PreparedRun], most: int) -> dict[Factor, FloatArray]:
-    """Block means of factors over all runs, aligned with the problem's blocks."""
-    length = segment_length(sum(run.time[-1] for run in runs))
-    single = [f for f in wanted if BY_NAME[f.signal].of_run is not None]
-    grouped = [f for f in wanted if BY_NAME[f.signal].of_run is None]
-    tables = []
-    for run in runs:
-        columns = (each[:, None] for each in _columns(single, grouped, run, most))
-        if single or (grouped and most):
-            table = run_blocks(run.time, run.gap, columns, run.used, run.direction, {}, block_size(run), length)
-            tables.append(table.x)
-    if not tables:
-        return {}
-    x = np.concatenate(tables).T
-    found = {f: x[k : k + 1] for k, f in enumerate(single)}
-    at = len(single)
-    return found | {f: x[at + most * k : at + most * (k + 1)] for k, f in enumerate(grouped)}
+    return grammar.judged(best, evaluated(best.law.factors, runs, most))
 
 
 def _proven(

@@ -6,7 +6,7 @@ multiplies, fits and compares. It knows nothing of winches.
 """
 
 import itertools
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -15,6 +15,8 @@ from winch_friction.discrepancy.engine import FloatArray
 from winch_friction.discrepancy.engine.crossfit import CrossFit, Explanation
 from winch_friction.discrepancy.engine.problem import bounded_fit
 from winch_friction.discrepancy.thresholds import LIMITS
+
+AT_ONCE = 2_000_000  # values of a wave: some 50 MB
 
 
 @dataclass(frozen=True)
@@ -144,12 +146,54 @@ class Grammar:
         beta = bounded_fit(h, g, self.lower, self.upper)
         return float(beta[-1]), beta[:-1]
 
-    def search(self, values: Values) -> list[Scored]:
-        """Laws by held-out loss, the best of each set of signals: one factor, then the best of these times any."""
+    def periodic(
+        self, x: FloatArray, frequencies: FloatArray, apart: bool
+    ) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """What a sine and a cosine over a signal, opposing the motion, take off the remainder, and their amounts.
+
+        `x` (blocks,) is the signal, `frequencies` one over its unit; each answer has their shape. Every record has a
+        level of its own; `apart`: and a phase.
+        """
+        carrier = self.unit * self.direction
+        left = self.y - self.x @ self.base.beta
+        run = self.cross.problem.blocks.run
+        # of each record and frequency: moments of the two about the record's own level
+        parts = np.array_split(frequencies, len(frequencies) * len(x) // AT_ONCE + 1)
+        moments = np.array([
+            np.concatenate([self._moments(carrier[own], left[own], x[own], each) for each in parts])
+            for own in (run == k for k in np.unique(run))
+        ])  # fmt: skip
+        ss, sc, cc, ys, yc = np.moveaxis(moments if apart else moments.sum(axis=0, keepdims=True), -1, 0)
+        ridge = 1e-9 * (ss + cc) + 1e-9
+        determinant = (ss + ridge) * (cc + ridge) - sc**2
+        sine, cosine = ((cc + ridge) * ys - sc * yc) / determinant, ((ss + ridge) * yc - sc * ys) / determinant
+        return (sine * ys + cosine * yc).sum(axis=0), sine[0], cosine[0]
+
+    @staticmethod
+    def _moments(carrier: FloatArray, left: FloatArray, x: FloatArray, frequencies: FloatArray) -> FloatArray:
+        """Shape (frequencies, 5): of sine and cosine with themselves, each other and what is left."""
+        phase = 2.0 * np.pi * np.outer(frequencies, x)
+        level = carrier / max(float(np.sqrt(carrier @ carrier)), 1e-12)
+        sine, cosine = np.sin(phase) * carrier, np.cos(phase) * carrier
+        sine -= np.outer(sine @ level, level)
+        cosine -= np.outer(cosine @ level, level)
+        own = [(sine * sine).sum(1), (sine * cosine).sum(1), (cosine * cosine).sum(1), sine @ left, cosine @ left]
+        return np.stack(own, axis=-1)
+
+    def search(self, values: Values, fit: Callable[[Scored], tuple[Scored, Values]] | None = None) -> list[Scored]:
+        """Laws by held-out loss, the best of each set of signals: one factor, then the best of these times any.
+
+        With `fit`, which moves a law's constants and evaluates it there, the best single factors of each kind are moved
+        before anything is multiplied with them.
+        """
         factors = list(values)
         singles = [
             self.screened(law, values) for f in factors for law in _ways((f,), len(values[f]) > 1)
         ]  # fmt: skip
+        if fit is not None:
+            moved = [fit(each) for each in _best_of_each(singles, LIMITS.grammar_judged, kinds=True)]
+            singles = [each for each, _ in moved]
+            values = {**values, **{f: own for _, more in moved for f, own in more.items()}}
         heads = _best_of_each(singles, LIMITS.grammar_heads)
         pairs = []
         for head, other in itertools.product(heads, factors):
@@ -158,7 +202,8 @@ class Grammar:
                 both = tuple(sorted((first, other), key=lambda f: (f.signal, f.kind)))
                 law = Law(both, head.law.opposing, head.law.each or len(values[other]) > 1)
                 pairs.append(self.screened(law, values))
-        chosen = [*_best_of_each(singles, LIMITS.grammar_judged), *_best_of_each(pairs, LIMITS.grammar_judged)]
+        alone = _best_of_each(singles, LIMITS.grammar_judged, kinds=fit is not None)
+        chosen = [*alone, *_best_of_each(pairs, LIMITS.grammar_judged)]
         return sorted((self.judged(each, values) for each in chosen), key=lambda each: each.loss)
 
 
@@ -172,9 +217,10 @@ def _ways(factors: tuple[Factor, ...], several: bool) -> list[Law]:
     return [Law(factors, opposing, own) for opposing in (True, False) for own in each]
 
 
-def _best_of_each(scored: Sequence[Scored], most: int) -> list[Scored]:
-    """The law that fits best of each set of signals and way of acting; the best so many."""
-    found: dict[tuple[frozenset[str], bool], Scored] = {}
+def _best_of_each(scored: Sequence[Scored], most: int, kinds: bool = False) -> list[Scored]:
+    """The law that fits best of each set of signals and way of acting, and of `kinds` of factors; the best so many."""
+    found: dict[tuple[frozenset[str], bool, tuple[str, ...]], Scored] = {}
     for each in sorted(scored, key=lambda one: one.inside):
-        found.setdefault((frozenset(each.law.signals), each.law.opposing), each)
+        own = tuple(factor.kind for factor in each.law.factors) if kinds else ()
+        found.setdefault((frozenset(each.law.signals), each.law.opposing, own), each)
     return list(found.values())[:most]

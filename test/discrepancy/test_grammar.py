@@ -179,6 +179,17 @@ def test_what_is_multiplied_has_had_its_constants_moved_first():
     assert {law.factors[0].kind for law in kept if law.signals == ("wire_out",)} == {"hump", "linear"}
 
 
+@pytest.mark.parametrize("read", [False, True])
+def test_a_law_that_is_to_be_read_has_three_constants_at_most(read):
+    hump = Factor("hump", "motor_speed", (("c", 2.0), ("h", 1.0)))
+    others = [Factor("wave", "wire_out", (("c", 2.0), ("h", 1.0))), Factor("step", "wire_layer", (("c", 3.0),))]
+    values = {hump: WIRE[None], others[0]: LEVEL[None], others[1]: np.sqrt(LEVEL)[None]}
+    found = grammar(TORQUE * WIRE * LEVEL).search(values, (lambda each: (each, {})) if read else None)
+    pairs = {frozenset(each.law.factors) for each in found if len(each.law.factors) == 2}
+    assert {hump, others[1]} in pairs
+    assert ({hump, others[0]} in pairs) is not read
+
+
 def test_laws_stand_by_what_they_leave_of_runs_that_they_were_not_fitted_to():
     gap = TORQUE * np.random.default_rng(2).normal(size=len(AT)) * np.where(RUN == 2, 5.0, 1.0)
     found = grammar(gap).search(VALUES)

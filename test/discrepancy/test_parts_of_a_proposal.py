@@ -76,6 +76,16 @@ def test_three_laws_are_proposed_at_most_and_they_are_searched_on_the_training_r
     assert asked == ["a", "c", *((k, 0.1 * k, ("c", "a"), "evaluate") for k in range(LIMITS.most_proposals))]
 
 
+def test_no_more_laws_are_put_to_the_locked_runs_than_so_many(monkeypatch):
+    """Of ten that they refuse, one after the other, each costs a preparation of all runs."""
+    asked = []
+    monkeypatch.setattr(proposals, "_laws", lambda *_: [(k, 0.1) for k in range(LIMITS.proposals_tried + 4)])
+    monkeypatch.setattr(proposals, "_proven", lambda *each: asked.append(each))
+    search = SimpleNamespace(verdict=Verdict(UNEXPLAINED), expansion=SimpleNamespace(runs=()))
+    assert propose(SimpleNamespace(search=search), (), None, RNG) == ()
+    assert len(asked) == LIMITS.proposals_tried
+
+
 @pytest.mark.parametrize(("off", "says"), [(-0.01, False), (0.01, True)])
 def test_an_equation_explains_from_where_on_it_closes_nearly_all(off, says):
     left = 3.0 - 2.0 * (LIMITS.closes_nearly_all + off)

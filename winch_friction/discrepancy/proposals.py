@@ -94,7 +94,7 @@ def propose(refit: Trial, train: Sequence[str], evaluate: Evaluate, rng: np.rand
         return ()
     runs = [run for run in search.expansion.runs if run.name in train]
     found: list[Proposal] = []
-    for scored, p_value in _laws(search, runs, rng):
+    for scored, p_value in _laws(search, runs, rng)[: LIMITS.proposals_tried]:
         proposal = _proven(refit, train, scored, p_value, evaluate, rng)
         if proposal is not None and proposal.worthwhile:
             found.append(proposal)

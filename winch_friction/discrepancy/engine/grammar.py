@@ -17,6 +17,7 @@ from winch_friction.discrepancy.engine.problem import bounded_fit
 from winch_friction.discrepancy.thresholds import LIMITS
 
 AT_ONCE = 2_000_000  # values of a wave: some 50 MB
+MOST_CONSTANTS = 3  # of a law that is to be read
 
 
 @dataclass(frozen=True)
@@ -198,7 +199,8 @@ class Grammar:
         pairs = []
         for head, other in itertools.product(heads, factors):
             first = head.law.factors[0]
-            if other.signal != first.signal:
+            many = fit is not None and len(first.constants) + len(other.constants) > MOST_CONSTANTS
+            if other.signal != first.signal and not many:
                 both = tuple(sorted((first, other), key=lambda f: (f.signal, f.kind)))
                 law = Law(both, head.law.opposing, head.law.each or len(values[other]) > 1)
                 pairs.append(self.screened(law, values))

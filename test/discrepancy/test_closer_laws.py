@@ -31,7 +31,17 @@ def test_thresholds_lie_in_the_middle_between_the_levels_of_the_runs():
     }
 
 
-@pytest.mark.parametrize(("spread", "there"), [(0.5, True), (2.0, False)])
+def test_a_run_that_went_over_others_levels_has_none_between_these():
+    parts = [np.full(50, 10.0), np.linspace(5.0, 60.0, 50), np.full(50, 40.0), np.full(50, 90.0)]
+    found = {dict(each.constants)["c"] for each in between_levels(BY_NAME["wire_out"], parts)}
+    assert list(found) == pytest.approx([0.5 * (90.0 + np.quantile(parts[1], 0.95))], rel=1e-3)
+
+
+def test_runs_that_were_set_alike_are_one_level():
+    assert thresholds("displacement", 2e-5, 2.0001e-5, 3e-5) == pytest.approx([2.5e-5], rel=1e-3)
+
+
+@pytest.mark.parametrize(("spread", "there"), [(0.5, True), (2.4, False)])
 def test_of_a_signal_that_moves_within_the_runs_there_are_no_levels(spread, there):
     assert bool(thresholds("wire_out", 100.0, 104.0, spread=spread)) is there
 

@@ -17,7 +17,8 @@ from winch_friction.discrepancy.vocabulary import BY_NAME, WORDS, Word, covered,
 from winch_friction.discrepancy.waves import turns, waves
 
 THRESHOLDS = ("step", "above", "below")
-APART = 3.0  # spreads within runs, by which levels of two runs are two levels
+LEVEL = (0.05, 0.95)  # quantiles of a run's samples, between which its level lies
+SAME = 1e-4  # of a signal: two runs at less than that from each other were set alike
 NARROW, WIDE = 0.05, 0.12  # of the span: widths of humps, set side by side
 STEPS = 40  # of a fit, per constant
 
@@ -36,15 +37,13 @@ def closer(grammar: Grammar, runs: Sequence[PreparedRun], most: int) -> Iterator
 
 
 def between_levels(word: Word, parts: Sequence[FloatArray]) -> Iterator[Factor]:
-    """Thresholds between the levels that a signal had in runs and groups, `parts`, where it has hardly moved in each:
-    of those that quantiles draw two may lie in one level, and none between it and the next."""
-    if len(parts) < 2:
-        return
-    low, middle, high = np.sort(np.array([np.quantile(each, (0.05, 0.5, 0.95)) for each in parts]), axis=0).T
-    spread = float(np.median(high - low))
-    for lower, upper in zip(middle, middle[1:], strict=False):
-        if upper - lower > max(APART * spread, 1e-6 * abs(upper)):
-            at = float(f"{0.5 * (lower + upper):.4g}")
+    """Thresholds between the levels that a signal had in runs and groups, `parts`, where these do not overlap: of those
+    that quantiles draw two may lie in one level, and none between it and the next."""
+    levels = sorted(tuple(np.quantile(each, LEVEL)) for each in parts)
+    ends = np.maximum.accumulate([high for _, high in levels])
+    for below, (above, _) in zip(ends, levels[1:], strict=False):
+        if above - below > SAME * abs(above):
+            at = float(f"{0.5 * (below + above):.4g}")
             yield from (Factor(kind, word.name, (("c", at),)) for kind in THRESHOLDS if kind in word.kinds)
 
 

@@ -252,9 +252,19 @@ def test_levels_of_runs_depend_on_no_signal(friction, signals, said):
     for side in sides:
         side.most_left_first = {}
     given = SimpleNamespace(prepared=[], crane=SimpleNamespace(wire_stiffness=np.nan))
-    found, notes = of_unexplained(Unexplained(*sides), given)
+    found, notes = of_unexplained(Unexplained(*sides), given, False)
     assert found.depends == signals
     assert len(notes) == said
+
+
+@pytest.mark.parametrize("said", [False, True])
+def test_where_an_equation_says_what_is_missing_nobody_is_sent_to_look_at_the_runs(said):
+    sides = [left_of(levels) for levels in ((0.5, -0.6, 0.8, -0.3), (0.2, 0.15))]
+    sides[0].most_left_first, sides[1].most_left_first = {"a": 13.0, "b": 1.0, "c": 1.0}, {"d": 1.0}
+    given = SimpleNamespace(prepared=[], crane=SimpleNamespace(wire_stiffness=np.nan))
+    found, notes = of_unexplained(Unexplained(*sides), given, said)
+    assert len(notes) == (0 if said else 2)
+    assert found.depends == (("oil_temperature",) if said else ())
 
 
 @pytest.mark.parametrize(("share", "kept"), [(0.2, False), (0.8, True)])

@@ -110,15 +110,13 @@ def test_a_drum_that_is_not_round_is_a_wave_over_its_turning(times):
     assert waves.turns(grammar(TORQUE * DIRECTION), 0.2 * angle) == []
 
 
-def test_a_phase_of_nothing_is_a_whole_period_late():
-    """A constant of no size would have no scale to be fitted on."""
-    wave = waves._best_wave(
-        SimpleNamespace(periodic=lambda *_, **__: (np.ones(1), np.ones(1), -np.zeros(1))),
-        "wire_out",
-        None,
-        np.array([0.1]),
-    )
-    assert dict(wave.constants) == {"c": 10.0, "h": 10.0}
+@pytest.mark.parametrize(("sine", "cosine", "late"), [(1.0, -0.0, 10.0), (1.0, -1e-3, 10.002), (-1.0, 1e-3, 5.0)])
+def test_a_phase_has_room_to_be_fitted_in(sine, cosine, late):
+    """A parameter may become twenty times its size: of 3 mm of 9 m none but 6 cm."""
+    told = SimpleNamespace(periodic=lambda *_, **__: (np.ones(1), np.array([sine]), np.array([cosine])))
+    wave = dict(waves._best_wave(told, "wire_out", None, np.array([0.1])).constants)
+    assert wave["c"] == 10.0
+    assert wave["h"] == pytest.approx(late, abs=2e-3)
 
 
 # -- the fit

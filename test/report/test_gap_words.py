@@ -20,7 +20,10 @@ from winch_friction.report.gap_words import (
     verdict_sentence,
 )
 
-LAW = SimpleNamespace(sentence="friction in proportion to wire out, 0.12 N*m/m; closes 98 % of the gap")
+LAW = SimpleNamespace(
+    sentence="friction in proportion to wire out, 0.12 N*m/m; closes 98 % of the gap",
+    declared=SimpleNamespace(reads=("wire_out", "motor_speed")),
+)
 
 
 def result(verdict, **more):
@@ -49,6 +52,13 @@ def test_a_proposed_law_is_part_of_the_decision_and_of_what_to_do(count, others)
     said = " ".join(next_steps(found))
     assert "--model proposal_1.yaml --terms-file proposal_1.py" in said
     assert "declare a term" not in said
+
+
+@pytest.mark.parametrize(("laws", "signals"), [((LAW,), "wire_out, motor_speed"), ((), "no recorded signal")])
+def test_what_no_test_finds_a_signal_of_depends_on_those_of_its_law(laws, signals):
+    """A groove every 9 m "depends on no recorded signal", and its law was proposed in the next sentence."""
+    said = verdict_sentence(result("unexplained", depends=(), proposals=laws))
+    assert f"it depends on {signals} (why)." in said
 
 
 @pytest.mark.parametrize(("levels", "steps"), [

@@ -225,14 +225,14 @@ def levels_of(sides: Sequence[Side]) -> Levels | None:
     return Levels(tuple(shares), float(beside.sum() / kept.sum()))
 
 
-def of_unexplained(result: GapResult, given: Given) -> tuple[GapResult, list[str]]:
-    """A result that nothing explains, and what is said of it. Where each run keeps a level of its own alone it depends
-    on no signal: what is steady within a run, such as the load or the oil's temperature, tells levels by chance."""
+def of_unexplained(result: GapResult, given: Given, said: bool) -> tuple[GapResult, list[str]]:
+    """A result that no name explains, and what is noted of it, unless an equation has `said` it. Where each run keeps a
+    level of its own alone it depends on no signal: what is steady in a run, load or oil, tells levels by chance."""
     sides = (result.train, result.holdout)
-    levels = levels_of(sides)
+    levels = None if said else levels_of(sides)
     if levels is not None and not levels.beside:
         result = replace(result, depends=())
-    return result, of_wire(given) + of_runs(sides) + ([] if levels is None else [levels.said])
+    return result, of_wire(given) + ([] if said else of_runs(sides)) + ([] if levels is None else [levels.said])
 
 
 def of_own_terms(named: Collection[str], given: FrictionModel, written: FrictionModel) -> list[str]:

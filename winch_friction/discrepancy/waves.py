@@ -48,5 +48,5 @@ def _best_wave(grammar: Grammar, signal: str, x: FloatArray, frequencies: FloatA
     k = int(np.argmax(gains))
     period = 1.0 / frequencies[k]
     late = -np.arctan2(cosines[k], sines[k]) / (2.0 * np.pi)
-    late = late % 1.0 or 1.0  # a constant of no size has no scale to be fitted on
+    late = 0.5 + (late - 0.5) % 1.0  # a phase of next to nothing has no room to be fitted in
     return Factor("wave", signal, (("c", float(f"{period:.6g}")), ("h", float(f"{late * period:.6g}"))))

@@ -104,7 +104,7 @@ def find_gap(runs: Sequence[Run], crane: Crane, model: FrictionModel, options: G
     if own := [name for each in result.effects if (name := each.law_name or each.name) in model.term_names]:
         notes += of_own_terms(own, model, result.model)
     if result.verdict == UNEXPLAINED:
-        result, said = of_unexplained(result, given)
+        result, said = of_unexplained(result, given, explained(result.verdict, proposals))
         notes += said
     refuted = () if seed.refuted is None or explained(result.verdict, proposals) else (seed.refuted,)
     if refuted and result.verdict == UNEXPLAINED and far_off(result.holdout):

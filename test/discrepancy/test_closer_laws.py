@@ -53,11 +53,12 @@ def test_layers_are_counted_and_one_run_has_no_threshold():
 
 def test_humps_stand_as_far_apart_as_they_are_wide():
     found = [dict(each.constants) for each in side_by_side(BY_NAME["motor_speed"], np.linspace(0.0, 200.0, 50))]
-    for width in (10.0, 24.0):
+    for width in (10.0, 24.0, 60.0):
         places = [each["c"] for each in found if each["h"] == width]
         assert np.diff([0.0, *places]) == pytest.approx(width)
         assert 200.0 - width <= places[-1] < 200.0
-    assert not list(side_by_side(BY_NAME["wire_out"], np.linspace(0.0, 200.0, 50)))
+    assert {each.signal for each in side_by_side(BY_NAME["wire_out"], np.linspace(0.0, 200.0, 50))} == {"wire_out"}
+    assert not list(side_by_side(BY_NAME["pressure"], np.linspace(0.0, 2e7, 50)))
     assert not list(side_by_side(BY_NAME["motor_speed"], np.empty(0)))
 
 
@@ -213,7 +214,14 @@ def test_closer_factors_are_of_what_all_runs_have(monkeypatch):
     )  # fmt: skip
     found = list(closer(grammar(TORQUE * DIRECTION * np.sin(DEPTH)), runs, 1))
     kinds = {(each.signal, each.kind) for each in found}
-    assert {("displacement", "step"), ("motor_speed", "hump"), ("wire_out", "wave"), ("drum_angle", "wave")} <= kinds
+    assert {
+        ("wire_out", "hump"),
+        ("run_time", "grow"),
+        ("displacement", "step"),
+        ("motor_speed", "hump"),
+        ("wire_out", "wave"),
+        ("drum_angle", "wave"),
+    } <= kinds
     assert ("oil_temperature", "step") not in kinds
     places = {dict(each.constants)["c"] for each in found if (each.signal, each.kind) == ("displacement", "step")}
     assert sorted(places) == pytest.approx([(2.5 + k) * 1e-5 for k in range(RUNS - 1)])

@@ -29,6 +29,10 @@ def _laws():
             if factor.kind not in seen:
                 seen.add(factor.kind)
                 yield Law((factor,), opposing=True, each=bool(word.of_group))
+    constants = (("c", 20.0), ("h", 5.0))
+    for closer in (Factor("hump", "wire_out", constants), Factor("hump", "oil_temperature", constants),
+                   Factor("wave", "drum_angle", constants), Factor("grow", "run_time", constants[:1])):  # fmt: skip
+        yield Law((closer,), opposing=True)
     two = (Factor("linear", "drum_torque"), Factor("above", "motor_speed", (("c", 90.0),)))
     yield Law(two, opposing=False)
 
@@ -40,7 +44,16 @@ def test_every_law_of_the_grammar_is_a_declared_term_with_units(law):
     units = {p.name: p.unit for p in term.parameters}
     for unit in units.values():
         dimension_of(unit)
-    powers = {"root": 0.5, "square": 2.0, "step": 0.0, "hump": 0.0, "fade": 0.0, "wave": 0.0, "sector": 0.0}
+    powers = {
+        "root": 0.5,
+        "square": 2.0,
+        "step": 0.0,
+        "hump": 0.0,
+        "fade": 0.0,
+        "grow": 0.0,
+        "wave": 0.0,
+        "sector": 0.0,
+    }
     signals = [(BY_NAME[f.signal].unit, powers.get(f.kind, 1.0)) for f in law.factors]
     assert product((term.parameters[0].unit, 1.0), *signals) == dimension_of("N*m")
     assert "what it is the data do not say" in term.source
@@ -73,11 +86,22 @@ def test_the_sentence_has_the_constants_of_the_last_fit():
     assert said == declare(law, 1.0).sentence.replace("16.9", "17.4")
 
 
+@pytest.mark.parametrize("kind", ["fade", "grow"])
+def test_what_goes_with_a_runs_own_time_is_the_same_as_a_memory_that_fades(kind):
+    time, own = np.linspace(0.0, 90.0, 10), (("c", 23.0),)
+    term = declare(Law((Factor(kind, "run_time", own),), opposing=False), 2.0).term
+    functions = FrictionModel("m", (term,), tuple(p.typical for p in term.parameters)).compile(1)
+    point, values = [1.0] * len(layout(1)), (2.0, 23.0)
+    assert tuple(functions.initial_states) == (1.0,)
+    scalar = [functions.scalar_torque(point, values, (float(np.exp(-t / 23.0)),)) for t in time]
+    assert scalar == pytest.approx(2.0 * shape(kind, time, dict(own), 0.02))
+
+
 def test_text_and_arrays_say_the_same():
     """The function over arrays and the equation in the file of terms are two writings of one law."""
     x = np.linspace(0.5, 60.0, 40)
     for kind in TEXTS:
-        if kind in ("lag", "sector"):
+        if kind in ("lag", "sector", "grow"):
             continue
         own = (("c", 23.0),) if kind in ("about", "step", "above", "below", "fade") else ()
         own = (("c", 23.0), ("h", 7.0)) if kind in ("hump", "wave") else own
@@ -98,6 +122,7 @@ def test_text_and_arrays_say_the_same():
         (Factor("step", "motor_speed", (("c", 104.72),)), "as soon as motor speed exceeds 1000 rpm"),
         (Factor("about", "wire_layer", (("c", 3.0),)), "linearly with wire layer, none at 3"),
         (Factor("lag", "pressure", (("c", 10.0),)), "with the pressure of the last 10 s"),
+        (Factor("grow", "run_time", (("c", 25.0),)), "rising with run time by 25 s"),
     ],
 )
 def test_a_law_is_said_in_the_units_that_people_read_and_declared_in_si(factor, words):

@@ -13,13 +13,14 @@ from scipy.optimize import minimize
 from winch_friction.discrepancy.engine import FloatArray
 from winch_friction.discrepancy.engine.grammar import Factor, Grammar, Law, Scored
 from winch_friction.discrepancy.preparation.prepare import PreparedRun
-from winch_friction.discrepancy.vocabulary import BY_NAME, WORDS, Word, covered, evaluated, signals
+from winch_friction.discrepancy.vocabulary import BY_NAME, FADES, WORDS, Word, covered, evaluated, signals
 from winch_friction.discrepancy.waves import turns, waves
 
 THRESHOLDS = ("step", "above", "below")
 LEVEL = (0.05, 0.95)  # quantiles of a run's samples, between which its level lies
 SAME = 1e-4  # of a signal: two runs at less than that from each other were set alike
-NARROW, WIDE = 0.05, 0.12  # of the span: widths of humps, set side by side
+HUMPED = ("motor_speed", "oil_temperature", "wire_out")  # what may be worst at one place
+WIDTHS = (0.05, 0.12, 0.3)  # of the span: of humps, set side by side
 STEPS = 40  # of a fit, per constant
 
 
@@ -31,6 +32,7 @@ def closer(grammar: Grammar, runs: Sequence[PreparedRun], most: int) -> Iterator
             parts = [own[run.used] for run in runs if run.used.any() for own in signals(word, run)]
             yield from between_levels(word, parts)
             yield from side_by_side(word, seen)
+    yield from (Factor("grow", "run_time", (("c", slow),)) for slow in FADES)
     places = [Factor("linear", name) for name in ("wire_out", "drum_angle") if len(covered(BY_NAME[name], runs))]
     for place, x in evaluated(places, runs, most).items():
         yield from turns(grammar, x[0]) if place.signal == "drum_angle" else waves(grammar, place.signal, x[0])
@@ -49,9 +51,9 @@ def between_levels(word: Word, parts: Sequence[FloatArray]) -> Iterator[Factor]:
 
 def side_by_side(word: Word, seen: FloatArray) -> Iterator[Factor]:
     """Humps as far from each other as they are wide, over all that was seen."""
-    if "hump" not in word.kinds or not len(seen):
+    if word.name not in HUMPED or not len(seen):
         return
-    for width in (NARROW * float(np.ptp(seen)), WIDE * float(np.ptp(seen))):
+    for width in (share * float(np.ptp(seen)) for share in WIDTHS):
         for at in np.arange(seen.min() + width, seen.max(), width):
             yield Factor("hump", word.name, (("c", float(f"{at:.4g}")), ("h", float(f"{width:.4g}"))))
 

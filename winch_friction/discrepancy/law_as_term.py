@@ -18,6 +18,7 @@ WORDS_OF = {
     "linear": "in proportion to {s}", "root": "with the root of {s}", "square": "with the square of {s}",
     "about": "linearly with {s}, none at {c}", "step": "as soon as {s} exceeds {c}", "above": "with {s} above {c}",
     "below": "with {s} below {c}", "hump": "around a {s} of {c}", "fade": "fading with {s} by {c}",
+    "grow": "rising with {s} by {c}",
     "lag": "with the {s} of the last {c} s", "wave": "periodically in {s}, every {c}",
     "sector": "within a sector of {s}",
 }  # fmt: skip
@@ -88,7 +89,7 @@ def _factor(factor: Factor, number: int, suffix: str) -> tuple[str, list[_Row], 
     z = f'sp.Symbol("z_{suffix}", real=True)'
     if factor.signal == "run_time":  # a run's own time is a memory that fades from its start
         state = f"State({z}, gain=sp.Integer(0), decay=1 / {names['c']}, initial=1.0, doc='time since the start')"
-        return z, rows, state
+        return TEXTS["grow"].format(z=z) if factor.kind == "grow" else z, rows, state
     state = None
     if factor.kind == "lag":
         state = f"State({z}, gain={symbol} / {names['c']}, decay=1 / {names['c']}, doc='{word.name} of the last while')"

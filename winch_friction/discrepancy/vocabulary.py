@@ -76,6 +76,7 @@ TEXTS: Mapping[str, str] = {
     "below": "sp.Piecewise(({c} - {x}, {x} <= {c}), (0.0, True))",
     "hump": "sp.exp(-((({x} - {c}) / {h})**2) / 2)",
     "fade": "sp.exp(-{x} / {c})",
+    "grow": "(1 - {z})",
     "lag": "{z}",
     "wave": "(1 + sp.sin(2 * sp.pi * ({x} - {h}) / {c})) / 2",
     "sector": "sp.Piecewise((1.0, sp.Mod({x} / (2 * sp.pi) - {c}, 1) < {h}), (0.0, True))",
@@ -100,6 +101,7 @@ def shape(kind: str, x: FloatArray, constants: Mapping[str, float], dt: float) -
         "below": lambda: np.maximum(c - x, 0.0),
         "hump": lambda: np.exp(-(((x - c) / h) ** 2) / 2),
         "fade": lambda: np.exp(-x / c),
+        "grow": lambda: 1.0 - np.exp(-x / c),
         "wave": lambda: (1.0 + np.sin(2 * np.pi * (x - h) / c)) / 2,
         "sector": lambda: (np.mod(x / (2 * np.pi) - c, 1.0) < h).astype(float),
     }

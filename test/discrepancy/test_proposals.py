@@ -123,6 +123,7 @@ def test_text_and_arrays_say_the_same():
         (Factor("about", "wire_layer", (("c", 3.0),)), "linearly with wire layer, none at 3"),
         (Factor("lag", "pressure", (("c", 10.0),)), "with the pressure of the last 10 s"),
         (Factor("grow", "run_time", (("c", 25.0),)), "rising with run time by 25 s"),
+        (Factor("hump", "oil_temperature", (("c", 40.0), ("h", 5.0))), "around 40 degC of oil temperature"),
     ],
 )
 def test_a_law_is_said_in_the_units_that_people_read_and_declared_in_si(factor, words):

@@ -17,7 +17,7 @@ SOURCE = "proposed by winch-friction gap: it fits, what it is the data do not sa
 WORDS_OF = {
     "linear": "in proportion to {s}", "root": "with the root of {s}", "square": "with the square of {s}",
     "about": "linearly with {s}, none at {c}", "step": "as soon as {s} exceeds {c}", "above": "with {s} above {c}",
-    "below": "with {s} below {c}", "hump": "around a {s} of {c}", "fade": "fading with {s} by {c}",
+    "below": "with {s} below {c}", "hump": "around {c} of {s}", "fade": "fading with {s} by {c}",
     "grow": "rising with {s} by {c}",
     "lag": "with the {s} of the last {c} s", "wave": "periodically in {s}, every {c}",
     "sector": "within a sector of {s}",

@@ -59,7 +59,7 @@ def test_only_what_it_closes_alone_is_taken(monkeypatch, other, taken):
     ],
 )
 def test_it_is_asked_where_nothing_else_explains(monkeypatch, first, left_by_laws, asked):
-    laws = tuple(SimpleNamespace(after=left, noise_floor=FLOOR) for left in left_by_laws)
+    laws = tuple(SimpleNamespace(after=left, noise_floor=FLOOR, closed=FLOOR / left) for left in left_by_laws)
     named, seen = trial(MISSING, FLOOR, FLOOR), []
     runs = [Run(f"run_{k}", {"time": np.arange(3.0), "motor_speed": np.ones(3)}) for k in range(2)]
     adequacy = SimpleNamespace(

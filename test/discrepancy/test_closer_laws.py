@@ -187,6 +187,16 @@ def test_no_constant_of_a_fit_becomes_nothing(monkeypatch):
     assert 0.0 < dict(moved.law.factors[0].constants)["c"] < 0.5
 
 
+@pytest.mark.parametrize("name", ["oil_temperature", "motor_speed"])
+def test_no_hump_stands_where_nobody_has_been(monkeypatch, name):
+    """Friction that falls with the oil's temperature over 24 to 60 degC was "around 0.146 degC"."""
+    x = 42.0 + 18.0 * np.sin(AT / 9.0)
+    monkeypatch.setattr(closer_laws, "covered", lambda word, runs: x if word.name == name else None)
+    law = Law((Factor("hump", name, (("c", 30.0), ("h", 10.0))),), opposing=True)
+    moved, _ = fit(monkeypatch, x, law, np.maximum(70.0 - x, 0.0) ** 2)
+    assert x.min() <= dict(moved.law.factors[0].constants)["c"] <= x.max()
+
+
 def test_of_what_is_counted_and_of_what_has_no_constant_nothing_is_moved(monkeypatch):
     x = 1.0 + AT % 4
     count = Law((Factor("about", "wire_layer", (("c", 1.0),)),), opposing=True)

@@ -71,11 +71,13 @@ def fitted(
     first = np.array([law.factors[k].constants[j][1] for k, j in places])
     steps = np.array([_step(law.factors[k], law.factors[k].constants[j][0]) for k, j in places])
 
+    reach = np.array([_reach(law.factors[k], law.factors[k].constants[j][0], runs) for k, j in places]).reshape(-1, 2)
+
     def left(away: FloatArray) -> float:
         nonlocal best
         values = first + steps * away
-        if (values * first <= 0.0).any():  # no width, memory or period is nothing or less
-            return float("inf")
+        if (values * first <= 0.0).any() or (values < reach[:, 0]).any() or (values > reach[:, 1]).any():
+            return float("inf")  # no width, memory or period is nothing or less
         trial = grammar.screened(own := _with(law, places, values), evaluated(own.factors, runs, most))
         best = trial if trial.inside < best.inside else best
         return trial.inside
@@ -99,6 +101,12 @@ def _with(law: Law, places: Sequence[tuple[int, int]], values: FloatArray) -> La
     for (k, j), value in zip(places, values, strict=True):
         own[k][j] = (own[k][j][0], float(f"{value:.6g}"))
     return replace(law, factors=tuple(replace(f, constants=tuple(c)) for f, c in zip(law.factors, own, strict=True)))
+
+
+def _reach(factor: Factor, name: str, runs: Sequence[PreparedRun]) -> tuple[float, float]:
+    """Between what values a constant may be moved: what is worst at one place was seen there."""
+    seen = covered(BY_NAME[factor.signal], runs) if (factor.kind, name) == ("hump", "c") else np.empty(0)
+    return (float(seen.min()), float(seen.max())) if len(seen) else (-np.inf, np.inf)
 
 
 def _step(factor: Factor, name: str) -> float:

@@ -62,6 +62,12 @@ def test_humps_stand_as_far_apart_as_they_are_wide():
     assert not list(side_by_side(BY_NAME["motor_speed"], np.empty(0)))
 
 
+def test_of_what_stayed_the_same_there_is_no_hump():
+    """An oil temperature that a map gives as a constant: humps of no width, and a division by it."""
+    assert not list(side_by_side(BY_NAME["oil_temperature"], np.full(50, 40.0)))
+    assert not list(side_by_side(BY_NAME["oil_temperature"], 40.0 + 1e-9 * np.arange(50)))
+
+
 # -- waves
 def wave_of(x, factor):
     return shape("wave", x, dict(factor.constants), 0.1)

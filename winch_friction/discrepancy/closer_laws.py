@@ -13,7 +13,7 @@ from scipy.optimize import minimize
 from winch_friction.discrepancy.engine import FloatArray
 from winch_friction.discrepancy.engine.grammar import Factor, Grammar, Law, Scored
 from winch_friction.discrepancy.preparation.prepare import PreparedRun
-from winch_friction.discrepancy.vocabulary import BY_NAME, FADES, WORDS, Word, covered, evaluated, signals
+from winch_friction.discrepancy.vocabulary import BY_NAME, FADES, WORDS, Word, covered, evaluated, signals, span_of
 from winch_friction.discrepancy.waves import turns, waves
 
 THRESHOLDS = ("step", "above", "below")
@@ -51,9 +51,9 @@ def between_levels(word: Word, parts: Sequence[FloatArray]) -> Iterator[Factor]:
 
 def side_by_side(word: Word, seen: FloatArray) -> Iterator[Factor]:
     """Humps as far from each other as they are wide, over all that was seen."""
-    if word.name not in HUMPED or not len(seen):
+    if word.name not in HUMPED or not (span := span_of(seen)):
         return
-    for width in (share * float(np.ptp(seen)) for share in WIDTHS):
+    for width in (share * span for share in WIDTHS):
         for at in np.arange(seen.min() + width, seen.max(), width):
             yield Factor("hump", word.name, (("c", float(f"{at:.4g}")), ("h", float(f"{width:.4g}"))))
 
@@ -68,15 +68,15 @@ def fitted(
         (k, j) for k, factor in enumerate(law.factors) for j in range(len(factor.constants))
         if not BY_NAME[factor.signal].whole
     ]  # fmt: skip
-    first = np.array([law.factors[k].constants[j][1] for k, j in places])
-    steps = np.array([_step(law.factors[k], law.factors[k].constants[j][0]) for k, j in places])
-
-    reach = np.array([_reach(law.factors[k], law.factors[k].constants[j][0], runs) for k, j in places]).reshape(-1, 2)
+    moved = [(law.factors[k], *law.factors[k].constants[j]) for k, j in places]
+    first = np.array([value for _, _, value in moved])
+    steps = np.array([_step(factor, name) for factor, name, _ in moved])
+    low, high = np.array([_reach(factor, name, runs) for factor, name, _ in moved]).reshape(-1, 2).T
 
     def left(away: FloatArray) -> float:
         nonlocal best
         values = first + steps * away
-        if (values * first <= 0.0).any() or (values < reach[:, 0]).any() or (values > reach[:, 1]).any():
+        if (values * first <= 0.0).any() or (values < low).any() or (values > high).any():
             return float("inf")  # no width, memory or period is nothing or less
         trial = grammar.screened(own := _with(law, places, values), evaluated(own.factors, runs, most))
         best = trial if trial.inside < best.inside else best

@@ -68,7 +68,7 @@ class Thresholds:
     word_price: float = 0.05  # of the logarithm of the loss, per word and constant: a simpler law may leave 5 % more
     as_good: float = 0.25  # of the same logarithm, within which another law is worth showing beside the best
     most_proposals: int = 3
-    proposals_tried: int = 4  # on the locked runs, 1.6 s each: of 30 effects none had its first after a refusal
+    proposals_tried: int = 4  # on the locked runs, 1.6 s each: of 40 effects two had their first after a refusal or two
     tuning_rounds: int = 3  # halving steps between the grid's constants
     free_knots: tuple[float, ...] = (0.02, 0.25, 0.5, 0.75, 0.98)  # quantiles of a signal between which it may bend
     stribeck_knots: tuple[float, ...] = (0.02, 0.06, 0.12, 0.2, 0.35)  # it is over within the slower third

@@ -108,10 +108,15 @@ def shape(kind: str, x: FloatArray, constants: Mapping[str, float], dt: float) -
     return made[kind]()
 
 
+def span_of(covered: FloatArray) -> float:
+    """Over how much a signal was seen; 0 where it stayed the same but for rounding."""
+    span = float(np.ptp(covered)) if len(covered) else 0.0
+    return span if span > 1e-6 * float(np.abs(covered).max(initial=1e-12)) else 0.0
+
+
 def factors(word: Word, covered: FloatArray) -> Iterator[Factor]:
     """Every function of a signal that the data could tell, its constants on a grid over what was covered."""
-    span = float(np.ptp(covered)) if len(covered) else 0.0
-    if span <= 1e-6 * float(np.abs(covered).max(initial=1e-12)):
+    if not (span := span_of(covered)):
         return
     quantiles = (float(f"{q:.3g}") for q in np.quantile(covered, QUANTILES))
     knots = _counts(covered) if word.whole else list(dict.fromkeys(quantiles))

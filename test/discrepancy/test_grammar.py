@@ -49,6 +49,14 @@ def test_a_wave_takes_what_it_is_with_its_phase_whatever_the_level_of_each_recor
     assert gains[1] < 0.7 * gains[0]
 
 
+def test_what_the_base_explains_is_no_wave():
+    """A level of 1 that the base has room for; the direction makes a wave of it."""
+    frequencies = np.linspace(0.05, 0.5, 40)
+    explained = grammar(np.ones(len(AT)), shift=1.0).periodic(DEPTH, frequencies, apart=False)[0]
+    alone = grammar(np.ones(len(AT))).periodic(DEPTH, frequencies, apart=False)[0]
+    assert explained.max() < 0.01 * alone.max()
+
+
 def test_apart_each_record_has_a_phase_of_its_own():
     search = grammar(TORQUE * DIRECTION * np.sin(2.0 * np.pi * DEPTH / 9.0 + 2.0 * RUN))
     frequency = np.array([1.0 / 9.0])

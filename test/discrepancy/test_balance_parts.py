@@ -14,6 +14,7 @@ from winch_friction.discrepancy.preparation.suspended_load import Mode, Suspende
 from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.physics.channels import GRAVITY
 from winch_friction.physics.friction.correction import Correction
+from winch_friction.physics.winch import Drum
 
 ONE = np.ones(3)
 
@@ -216,6 +217,29 @@ def test_a_load_that_nobody_weighed_is_the_known_one_and_moves_with_rope_and_cra
     assert load.acceleration == pytest.approx(0.16 * ONE)
     assert not load.heave.any()
     assert not load.tension_measured
+
+
+@pytest.mark.parametrize(
+    ("change", "load", "made"),
+    [
+        ({}, 500.0, 1),
+        ({}, 501.0, 2),
+        ({}, float("nan"), 2),
+        ({"drum": Drum((0.81,))}, 500.0, 2),
+        ({"wire_mass": 9.0}, 500.0, 2),
+        ({"inertia": 9.0}, 500.0, 1),
+    ],
+)
+def test_a_load_is_made_anew_where_what_it_hangs_on_has_changed(monkeypatch, change, load, made):
+    asked = []
+    monkeypatch.setattr(suspended_load, "load_of", lambda *args: asked.append(args) or len(asked))
+    own = SimpleNamespace(drum=Drum((0.8,)), wire_mass=8.0, inertia=1.0)
+    seen = SimpleNamespace(grid="grid", motion="motion", load={})
+    assert suspended_load.load_seen(seen, own, 500.0) == 1
+    other = SimpleNamespace(**{**vars(own), **change})
+    assert suspended_load.load_seen(seen, other, load) == made
+    assert suspended_load.load_seen(seen, other, float(load)) == made, "a number that is none is the same each time"
+    assert asked[-1][:3] == ("grid", "motion", other if made == 2 else own)
 
 
 # -- corrections that are moved, and what a file says

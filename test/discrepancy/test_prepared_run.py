@@ -109,7 +109,7 @@ def prepared(monkeypatch, mode=None, spikes=None, tension=False, wire=0.0, **mas
         asked["spikes"] = (gap[0], used.copy(), dt)
         return TIME[100] == TIME
 
-    def load_of(grid, motion, crane, load):
+    def load_seen(seen, crane, load):
         asked["load"] = load
         return "load"
 
@@ -122,7 +122,7 @@ def prepared(monkeypatch, mode=None, spikes=None, tension=False, wire=0.0, **mas
         return whole["rung"]
 
     for name, part in (
-        ("see", lambda *_: seen), ("Balancing", lambda *_: balancing), ("load_of", load_of), ("_on_wire", on_wire),
+        ("see", lambda *_: seen), ("Balancing", lambda *_: balancing), ("load_seen", load_seen), ("_on_wire", on_wire),
         ("settled", lambda *_: whole["settled"]), ("rung_out", rung_out),
         ("beside_holes", lambda *_: whole["holes"]), ("_followed", lambda *_: whole["followed"]),
         ("spikes_of", spiky), ("channels_of", lambda *_: {}),

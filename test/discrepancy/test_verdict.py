@@ -164,6 +164,20 @@ def result(**more):
     return written.content()
 
 
+@pytest.mark.parametrize(
+    ("predict", "laws", "signals"),
+    [
+        ((), ("wire_out", "hook_load"), ["wire_out", "hook_load"]),
+        ((Dependence("speed", 0.2, 1e-3),), ("wire_out",), ["speed"]),
+        ((), None, []),
+    ],
+)
+def test_what_no_signal_predicts_depends_on_those_that_its_law_reads(predict, laws, signals):
+    """Of a groove every 9 m gap.json said that it depends on nothing, and had its law three lines further down."""
+    law = [SimpleNamespace(declared=SimpleNamespace(reads=laws), content=lambda stem: stem)] * (laws is not None)
+    assert result(depends=predict, proposals=law)["unexplained"]["depends_on"] == signals
+
+
 def test_the_answer_is_written_with_each_of_its_figures_in_its_own_place():
     content = result()
     assert content["gap"] == {
@@ -186,7 +200,8 @@ def test_the_answer_is_written_with_each_of_its_figures_in_its_own_place():
 
 
 def test_proposals_are_numbered_from_one_as_their_files_are():
-    content = result(proposals=[SimpleNamespace(content=lambda stem: stem)] * 2, next_experiment={"scenario": "a.yaml"})
+    law = SimpleNamespace(content=lambda stem: stem, declared=SimpleNamespace(reads=("wire_out",)))
+    content = result(proposals=[law] * 2, next_experiment={"scenario": "a.yaml"})
     assert content["proposals"] == ["proposal_1", "proposal_2"]
     assert content["next_experiment"] == {"scenario": "a.yaml"}
 

@@ -20,14 +20,11 @@ from winch_friction.report.gap_words import (
     verdict_sentence,
 )
 
-LAW = SimpleNamespace(
-    sentence="friction in proportion to wire out, 0.12 N*m/m; closes 98 % of the gap",
-    declared=SimpleNamespace(reads=("wire_out", "motor_speed")),
-)
+LAW = SimpleNamespace(sentence="friction in proportion to wire out, 0.12 N*m/m; closes 98 % of the gap")
 
 
 def result(verdict, **more):
-    base = {"effects": [], "depends": (SimpleNamespace(signal="wire_out"),), "refused": "why", "proposals": (),
+    base = {"effects": [], "depends_on": ("wire_out",), "refused": "why", "proposals": (),
             "next_experiment": None, "adequacy": (), "levels": "",
             "model": SimpleNamespace(corrections=(), terms=())}  # fmt: skip
     return SimpleNamespace(verdict=verdict, **(base | more))
@@ -54,10 +51,11 @@ def test_a_proposed_law_is_part_of_the_decision_and_of_what_to_do(count, others)
     assert "declare a term" not in said
 
 
-@pytest.mark.parametrize(("laws", "signals"), [((LAW,), "wire_out, motor_speed"), ((), "no recorded signal")])
-def test_what_no_test_finds_a_signal_of_depends_on_those_of_its_law(laws, signals):
-    """A groove every 9 m "depends on no recorded signal", and its law was proposed in the next sentence."""
-    said = verdict_sentence(result("unexplained", depends=(), proposals=laws))
+@pytest.mark.parametrize(
+    ("depends_on", "signals"), [(("wire_out", "motor_speed"), "wire_out, motor_speed"), ((), "no recorded signal")]
+)
+def test_what_is_left_depends_on_the_signals_of_the_answer(depends_on, signals):
+    said = verdict_sentence(result("unexplained", depends_on=depends_on))
     assert f"it depends on {signals} (why)." in said
 
 

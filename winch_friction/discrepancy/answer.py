@@ -165,16 +165,20 @@ class GapResult:
         """Where the training runs and the model as it was given disagree; no verdict hangs on it."""
         return tuple(find_regions(self.train.blocks, self.train.before, READ_AS))
 
+    @property
+    def depends_on(self) -> tuple[str, ...]:
+        """Signals that what is left depends on: those that predict it, else those that the simplest law reads."""
+        of_law = tuple(self.proposals[0].declared.reads) if self.proposals else ()
+        return tuple(each.signal for each in self.depends) or of_law
+
     def content(self) -> dict[str, Any]:
         """The JSON document of docs/interfaces.md; further keys only add."""
         return {
             "schema": SCHEMA,
             "verdict": self.verdict,
             "effects": [effect.content() for effect in self.effects],
-            "regions": [
-                {"where": r.where, "share_of_gap": r.share_of_gap, "mean_residual": r.mean_residual} for r in
-                self.regions
-            ],
+            "regions": [{"where": r.where, "share_of_gap": r.share_of_gap, "mean_residual": r.mean_residual}
+                        for r in self.regions],
             "gap": {
                 "unit": self.unit,
                 "train": _before_after(self.train),
@@ -187,7 +191,7 @@ class GapResult:
                 },
             },
             "unexplained": {
-                "depends_on": [each.signal for each in self.depends],
+                "depends_on": list(self.depends_on),
                 "share_of_gap": self.unexplained_share,
                 "reason": self.refused,
             },
@@ -232,9 +236,8 @@ def decide(cross: CrossFit, selection: Selection, left: Sequence[Dependence], ri
     before, after = max(steady_excess(cross, selection.base), 1e-9), steady_excess(cross, selection.final)
     depends = telling(cross, left)
     if not selection.found:
-        strong = any(d.share >= LIMITS.least_unexplained for d in depends) or (
-            before > LIMITS.never_noise and not rippled
-        )
+        strong = any(d.share >= LIMITS.least_unexplained for d in depends)
+        strong |= before > LIMITS.never_noise and not rippled
         return Verdict(UNEXPLAINED, "no named effect explains it") if strong else Verdict(NOTHING)
     implausible = [f.slot for f in selection.found if cross.at_bound(selection.final, f.slot)]
     if implausible:
@@ -267,9 +270,8 @@ def keeps_something(excess: float, before: float, depends: Sequence[Dependence])
     large in itself or hangs on a signal."""
     remains = excess > LIMITS.least_excess and excess / before > LIMITS.left_over
     remains |= excess > LIMITS.large_excess and excess / before > LIMITS.small_left_over
-    return remains and (
-        excess > LIMITS.obvious_excess or any(d.share >= POINTS * LIMITS.least_unexplained for d in depends)
-    )
+    tells = any(d.share >= POINTS * LIMITS.least_unexplained for d in depends)
+    return remains and (excess > LIMITS.obvious_excess or tells)
 
 
 def steady_excess(cross: CrossFit, explanation: Explanation) -> float:
@@ -285,10 +287,8 @@ def steady_excess(cross: CrossFit, explanation: Explanation) -> float:
 
 def named(left: Sequence[Dependence]) -> tuple[Dependence, ...]:
     """The signals that 'unexplained' names, those that are sure first."""
-    significant = [
-        each for each in left if each.p_value <= LIMITS.remainder_p and each.share > LIMITS.least_named_share
-    ]
-    return tuple((significant or [d for d in left if d.share > 0.0])[: LIMITS.most_signals])
+    sure = [d for d in left if d.p_value <= LIMITS.remainder_p and d.share > LIMITS.least_named_share]
+    return tuple((sure or [d for d in left if d.share > 0.0])[: LIMITS.most_signals])
 
 
 def unexplained_share(cross: CrossFit, selection: Selection, verdict: Verdict) -> float:

@@ -59,8 +59,7 @@ def verdict_sentence(result: "GapResult") -> str:
     if result.verdict == "nothing_missing":
         return "Nothing is missing: what is left is noise and parameters within the model's own uncertainty."
     if result.verdict == "unexplained":
-        of_law = result.proposals[0].declared.reads if result.proposals else ("no recorded signal",)
-        signals = ", ".join([each.signal for each in result.depends] or of_law)
+        signals = ", ".join(result.depends_on) or "no recorded signal"
         said = f"Something is missing that no named effect explains; it depends on {signals} ({result.refused})."
         return f"{said} {_proposed(result)}".rstrip()
     if result.verdict == "insufficient":

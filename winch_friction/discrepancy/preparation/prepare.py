@@ -18,7 +18,7 @@ from winch_friction.discrepancy.preparation.suspended_load import (
     Mode,
     SuspendedLoad,
     beside_holes,
-    load_of,
+    load_seen,
     rung_out,
     settled,
     swinging_mass,
@@ -176,7 +176,7 @@ def prepare(
     seen = seen if seen is not None and seen.is_of(run, crane, turning) else see(run, crane, turning, seen)
     grid, motion = seen.grid, seen.motion
     balancing = Balancing(run, crane, model, seen, accounted or Accounted())
-    swing, hanging, balance = _on_wire(balancing, load_of(grid, motion, crane, load), mode, wire)
+    swing, hanging, balance = _on_wire(balancing, load_seen(seen, crane, load), mode, wire)
     mode = swing.mode
     used = (
         motion.used

@@ -5,7 +5,7 @@ a reversal, which a noisy speed cannot.
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, field, fields, replace
 from functools import cached_property
 from typing import Any
 
@@ -217,6 +217,7 @@ class Seen:
     turning: bool
     grid: Grid
     motion: Motion
+    load: dict[str, Any] = field(default_factory=dict, init=False, repr=False, compare=False)  # as it was asked last
 
     def is_of(self, run: Run, crane: Crane, turning: bool) -> bool:
         """Whether it is of this very run, seen in the same way on a crane whose motors and gear are the same."""
@@ -249,8 +250,7 @@ def see(run: Run, crane: Crane, turning: bool = False, before: Seen | None = Non
 
 def measured_groups(columns: Mapping[str, FloatArray], run: Run, crane: Crane, window: int) -> Groups:
     """All groups with their smoothed pressures; `InputError` where one lacks a channel or has no displacement."""
-    names = run.groups
-    if not names:
+    if not (names := run.groups):
         raise InputError(f"{run.name}: no motor group's pressures and displacement; they close the torque balance")
     balancing = driving_group(names)
     return tuple(_measured(columns, run, crane, name, name == balancing, window) for name in names)
@@ -297,4 +297,4 @@ def shared(own: Any, other: Any) -> Any:
 def _same(own: np.ndarray, other: Any) -> bool:
     """Whether two arrays are the same to the bit, NaN and the sign of zero included."""
     alike = isinstance(other, np.ndarray) and (own.shape, own.dtype) == (other.shape, other.dtype)
-    return alike and np.array_equal(np.ravel(own).view(np.uint8), np.ravel(other).view(np.uint8))
+    return own is other or alike and np.array_equal(np.ravel(own).view(np.uint8), np.ravel(other).view(np.uint8))

@@ -12,7 +12,7 @@ import numpy as np
 
 from winch_friction.discrepancy.preparation.grid import HOLE, Grid, recursive, smooth
 from winch_friction.discrepancy.preparation.load_levels import level_of
-from winch_friction.discrepancy.preparation.seen import Motion
+from winch_friction.discrepancy.preparation.seen import Motion, Seen
 from winch_friction.physics.channels import GRAVITY
 from winch_friction.physics.signals import CLIMBS, FloatArray, away_from
 from winch_friction.physics.winch import Crane
@@ -156,6 +156,16 @@ def heavy_by_tune(frequency: FloatArray, length: FloatArray, hanging: FloatArray
     if max(whole, along) <= OUT_OF_TUNE or min(whole, along) >= CLEARLY_CLOSER * max(whole, along):
         return None
     return along < whole
+
+
+def load_seen(seen: Seen, crane: Crane, known: float) -> SuspendedLoad:
+    """`load_of` a run that was seen on this crane or one of its gear: as it was made last, where nothing of it has
+    changed. A search asks for the same load for two of three models."""
+    asked = crane.drum, crane.wire_mass, None if np.isnan(known) else known
+    if seen.load.get("asked") != asked:
+        seen.load.update(asked=asked, told=load_of(seen.grid, seen.motion, crane, known))
+    told: SuspendedLoad = seen.load["told"]
+    return told
 
 
 def load_of(grid: Grid, motion: Motion, crane: Crane, known: float) -> SuspendedLoad:

@@ -86,6 +86,48 @@ def test_an_offset_is_over_when_as_much_is_taken_away() -> None:
     assert over == ""
 
 
+@pytest.mark.parametrize("group", ["active", "passive"])
+@pytest.mark.parametrize("end", [25.6, 31.7, 34.6])
+def test_ports_that_were_exchanged_are_right_once_they_are_exchanged_again(group: str, end: float) -> None:
+    """By then they show other pressures: neither a share nor what was added is taken back, and it stood for good."""
+
+    def exchange(sample: Sample) -> None:
+        own = sample.groups[group]
+        own.pressure_a, own.pressure_b = own.pressure_b, own.pressure_a
+
+    (_, words), (over, nothing) = said(winch(), exchange, end=end).items()
+    assert f"{group}.pressure_a" in words
+    assert f"{group}.pressure_b" in words
+    assert end < over < end + 0.7
+    assert nothing == ""
+
+
+def test_ports_that_are_exchanged_do_not_mend_a_gain() -> None:
+    def spoil(sample: Sample) -> None:
+        own = sample.groups["active"]
+        own.pressure_a *= 1.4
+        if sample.time >= TO:
+            own.pressure_a, own.pressure_b = own.pressure_b, own.pressure_a
+
+    assert list(said(winch(), spoil, end=40.0).values())[-1] != ""
+
+
+@pytest.mark.parametrize(("hole", "over"), [(0.2, True), (0.45, True), (0.6, False)])
+@pytest.mark.parametrize("share", [0.0, 0.9, 1.1])
+def test_a_reading_may_step_back_where_no_sample_comes(hole: float, over: bool, share: float) -> None:
+    """Whoever plugs it in again interrupts it: it was blamed for good though it was right."""
+    lost = (each for each in winch() if not TO <= each.time < TO + hole)
+    found = said(lost, times("passive", "displacement", share))
+    assert (list(found.values())[-1] == "") is over
+    assert "passive.displacement" in next(iter(found.values()))
+
+
+def test_a_hole_alone_takes_nothing_back_and_tells_nothing() -> None:
+    lost = [each for each in winch(40.0) if not TO <= each.time < TO + 0.4]
+    assert said(iter(lost)) == {}
+    assert len(said(iter(lost), times("passive", "pressure_a", 1.1), end=40.0)) == 1
+
+
 @pytest.mark.parametrize("rate", [10.0, 50.0, 200.0])
 @pytest.mark.parametrize("noise", [0.1, 2.0])
 def test_a_winch_in_a_sea_steps_nothing(rate: float, noise: float) -> None:

@@ -6,9 +6,10 @@ displacement's feedback, goes from one sample to the next, and the shaft turns o
 model is asked. A gain that drifts is not seen, nor one that steps where the driving motors' friction reverses.
 """
 
+import itertools
 import math
 from collections import deque
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -22,6 +23,7 @@ from winch_friction.physics.winch.operating_point import ChannelRanges
 # s and samples that are looked at on either side: short beside a wave and the wire's swing, which a parabola follows;
 # s between two samples, of a log of 10 Hz with its jitter; samples that hold the far side at the fastest rate
 SIDE, FEWEST, LONGEST, MOST_ROWS = 0.1, 5, 0.13, 1000
+HOLE = 0.5  # s without a sample within which a reading may have stepped back: over it a parabola follows a wave
 USUAL_TIME, USUAL_KNOWN = 10.0, 1.0  # s of the mean size of second differences, and until it is known
 SUDDEN = 4.0  # times that mean: what Gaussian noise shows in one sample of 700 is looked at
 AT_ONCE = 0.6  # of the step, between two samples: a pump, a valve and a swash plate take some
@@ -126,9 +128,13 @@ class TorqueStep:
             self._begin(names)
             return self._words()
         passed = sample.time - self._rows[-1].time if self._rows else 0.0
-        if names != self._names or (self._rows and not 0.0 < passed < LONGEST):
+        hole = bool(self._rows) and not 0.0 < passed < LONGEST
+        across = hole and names == self._names and bool(self._off) and 0.0 < passed <= HOLE
+        if names != self._names or (hole and not across):
             self._begin(names)
             self._off = self._off if all(name in names for name in self._off) else {}  # other motors
+        if across:
+            self._looks.append(sample.time)
         shown = tuple(getattr(each, name) for each in sample.groups.values() for name in CHANNELS)
         self._rows.append(Row(sample.time, torque, held, sample.motor_speed, shown or (sample.motor_torque,)))
         self._look(sample, dt)
@@ -175,10 +181,16 @@ class TorqueStep:
         moment = 0.5 * (seen[at - 1].time + seen[at].time)
         time = np.array([row.time for row in rows]) - moment
         shown = {n: _step(time, np.array([r.shown[k] for r in rows])) for k, n in enumerate(self._names)}
-        back = {name for name, step in self._off.items() if _is_back(step, shown[name])}
-        self._off = {name: step for name, step in self._off.items() if name not in back}
         about = [row for row in seen if abs(row.time - seen[at].time) <= max(REVERSAL, time[-1])]
         turns_on = all(row.speed * seen[at].speed > 0.0 for row in about)
+        whole = all(after.time - before.time < LONGEST for before, after in itertools.pairwise(rows))
+        if not (whole or turns_on):  # in a hole with a reversal friction steps them as well
+            return
+        exchanged = {name for pair in self._exchanged(self._off) & self._exchanged(shown) for name in pair}
+        back = {name for name, step in self._off.items() if name in exchanged or _is_back(step, shown[name])}
+        self._off = {name: step for name, step in self._off.items() if name not in back}
+        if not whole:
+            return
         kink = min((_kink(near, moment) for near in (rows, about)), key=lambda each: each.std)
         if back or max(abs(row.speed) for row in rows) <= self._moving:  # a brake takes the load over
             return
@@ -186,6 +198,14 @@ class TorqueStep:
             if step := self._unanswered(time, rows, column, kink, sample):
                 whose = {name: each for name, each in shown.items() if self._part(name, each, sample) > PART * step}
                 self._off |= {name: each for name, each in whose.items() if name not in self._off}
+
+    def _exchanged(self, steps: Mapping[str, StepFit]) -> set[tuple[str, str]]:
+        """The ports that show each other's pressure from then on, by the steps of their readings: once more, and they
+        are right again, whatever they show by then."""
+        pairs = [(f"{group}.pressure_a", f"{group}.pressure_b") for group in {n.partition(".")[0] for n in self._names}]
+        return {
+            pair for pair in pairs if all(each in steps for each in pair) and _exchange(*(steps[each] for each in pair))
+        }
 
     def _part(self, name: str, each: StepFit, sample: Sample) -> float:
         """What a reading's step makes of the torque's, N m."""
@@ -216,6 +236,12 @@ class TorqueStep:
             return ""
         steps = ", ".join(f"{name} by {each.step / abs(each.before):+.0%}" for name, each in self._off.items())
         return f"the shaft did not answer a step of {steps}: a transducer or a feedback?"
+
+
+def _exchange(one: StepFit, two: StepFit) -> bool:
+    """Whether each of two readings steps to where the other one was."""
+    apart = two.before - one.before
+    return one.sure and two.sure and max(abs(one.step - apart), abs(two.step + apart)) < BACK * abs(apart)
 
 
 def _is_back(step: StepFit, other: StepFit) -> bool:

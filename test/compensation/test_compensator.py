@@ -119,12 +119,21 @@ def test_other_settings_leave_the_envelope_around_the_seed_and_not_around_the_mo
 
 def test_a_narrow_envelope_leaves_the_slew_that_a_reversal_of_the_whole_friction_needs():
     limits = []
-    for envelope in (0.5, 1.0, 2.0):
+    for envelope in (0.5, 1.0, 1.3):
         each = compensator(envelope=envelope, reversal_time=0.5)
         run_up(each, until=0.1)
         limits.append(each.status()["slew_limit"])
     assert limits[0] == pytest.approx(limits[1])
-    assert limits[2] == pytest.approx(2.0 * limits[1])
+    assert limits[2] == pytest.approx(1.3 * limits[1])
+
+
+def test_no_setting_leaves_more_than_a_third_beyond_the_seed():
+    """`envelope` could be set to 2 at a running node: with gains of 1.5 a torque of twice the seed's went out."""
+    with pytest.raises(InputError, match=r"envelope must be 0 \.\.\. 1\.3, found 1\.31"):
+        CompensatorConfig(envelope=1.31)
+    each = compensator(scale=1.3, gains=dict.fromkeys(SEED.term_names, 1.5))
+    outputs, _ = run_up(each)
+    assert outputs[-1].friction_torque == pytest.approx(1.3 * model_torque(SEED, ahc_sample(0.0, 100.0), 100.0))
 
 
 def test_slew_limit_bounds_every_step():
@@ -660,7 +669,7 @@ def test_a_term_with_a_memory_moves_with_the_samples():
     """Presliding: after a reversal the bristles turn over a few hundredths of a radian, not at once and not never."""
     term = term_named("presliding")
     model = FrictionModel("bristles", (term,), tuple(each.typical for each in term.parameters))
-    each = FeedforwardCompensator(CRANE, model, CompensatorConfig(scale=1.0, ramp_time=0.02, envelope=2.0))
+    each = FeedforwardCompensator(CRANE, model, CompensatorConfig(scale=1.0, ramp_time=0.02))
     law = FrictionLaw(model, {})
     for k in range(20):
         sample = ahc_sample(k * PERIOD, 20.0)

@@ -6,7 +6,7 @@ from dataclasses import replace
 import pytest
 
 from winch_friction.compensation import CompensatorConfig, FeedforwardCompensator
-from winch_friction.compensation.parts import CarryingPressure, pressure_per_torque
+from winch_friction.compensation.carrying_pressure import CarryingPressure, carried
 from winch_friction.physics.channels import BAR
 from winch_friction.physics.signals import GroupSample, Sample
 
@@ -52,7 +52,7 @@ def test_with_a_displacement_that_stays_it_is_the_torque(crane, seed):
 def test_motors_that_swing_out_ask_for_no_more_than_they_are_rated_for(crane, seed, rated):
     """At a tenth of the displacement it was 500 bar, and 2000 N m would have been 1950."""
     crane = replace(crane, rated_pressure=rated, absolute_torque_limit=1e5)
-    each = compensator(crane, seed.with_values({"C6": 1.4 * seed.value("C6")}), envelope=2.0, scale=1.3)
+    each = compensator(crane, seed.with_values({"C6": 1.4 * seed.value("C6")}), scale=1.3)
     said = driven(each, crane, [0.3] * 50 + [0.1] * 50)
     assert max(s.pressure for s in said) == pytest.approx(rated or 450 * BAR)
     assert each.status()["pressure_clamps"] > 0
@@ -99,7 +99,7 @@ def test_motors_that_are_swung_out_are_asked_for_nothing(crane, seed, share, pre
 def test_a_crane_of_unknown_motors_that_are_swung_out_is_answered(crane):
     groups = {"active": GroupSample(50 * BAR, 25 * BAR, 0.0)}
     bare = replace(crane, max_displacement=0.0)
-    assert pressure_per_torque(Sample(0.0, 0.0, groups=groups), bare, CompensatorConfig()) == 0.0
+    assert carried(Sample(0.0, 0.0, groups=groups), bare, CompensatorConfig()).per_torque == 0.0
 
 
 # -- the part itself
@@ -137,7 +137,7 @@ def test_a_group_that_is_not_there_carries_nothing():
 def test_the_group_that_was_set_carries_it_or_the_only_one(crane, groups, name, carries, share, counted):
     """At half the floor half its pressure; swung out none, and none past centre, where it would push the other way."""
     members = {each: GroupSample(50 * BAR, 25 * BAR, share * crane.max_displacement) for each in groups}
-    found = pressure_per_torque(Sample(0.0, 0.0, groups=members), crane, CompensatorConfig(pressure_group=name))
+    found = carried(Sample(0.0, 0.0, groups=members), crane, CompensatorConfig(pressure_group=name)).per_torque
     motors = crane.groups.get(carries, math.inf)
     assert found == pytest.approx(1.0 / (motors * counted * crane.max_displacement))
 

@@ -204,10 +204,11 @@ def status(**changes: Any) -> dict[str, Any]:
     return {"state": "active", "contradictions": "", "missing": "the speed", "learned_model_refused": ""} | changes
 
 
-def judged(now: float, stands: bool = False, **changes: Any) -> tuple[int, str]:
+def judged(now: float, stands: bool = False, warnings: tuple[str, ...] = (), **changes: Any) -> tuple[int, str]:
     """Level and summary of a compensator that has been active since 60 s."""
+    service = Given(status=lambda now: status(**changes), warnings=lambda now: [*warnings])
     node = bare(
-        CompensatorNode, service=Given(status=lambda now: status(**changes)), service_now=lambda: now, _activated=60.0,
+        CompensatorNode, service=service, service_now=lambda: now, _activated=60.0,
         options=NodeOptions(diagnostics_period=2.0), _clock_stands=lambda: stands, count_publishers=lambda _: 1,
         _torque=Given(topic_name="t"), _input_health=Given(report=lambda: "inputs"),
     )  # fmt: skip
@@ -230,6 +231,8 @@ def judged(now: float, stands: bool = False, **changes: Any) -> tuple[int, str]:
         (70.0, {"state": "stale", "contradictions": "a load"}, (ERROR, "stale: a load")),
         (70.0, {"contradictions": "a load"}, (OK, "active: a load")),
         (70.0, {"learned_model_refused": "old"}, (WARN, "active; learned model refused: old")),
+        (70.0, {"warnings": ("less", "more")}, (WARN, "active; less; more")),
+        (70.0, {"warnings": ("less",), "state": "stale"}, (ERROR, "stale: the speed; less")),
         (70.0, {"state": "stale", "learned_model_refused": "old"},
          (ERROR, "stale: the speed; learned model refused: old")),
     ],

@@ -12,7 +12,7 @@ from winch_friction.records import strict_yaml
 from winch_friction.records.crane_file import crane_from_content, load_crane
 from winch_friction.records.model_file import load_model, model_from_text, model_to_text, save_model
 from winch_friction.records.schemas import DECLARED, problems, with_all_problems
-from winch_friction.records.strict_yaml import config_directory, parse_yaml, read_yaml
+from winch_friction.records.strict_yaml import LARGEST_FILE, config_directory, parse_yaml, read_yaml
 
 MODELS = sorted(path.stem for path in (config_directory() / "models").glob("*.yaml"))
 
@@ -443,3 +443,17 @@ def test_a_key_that_stands_thrice_is_told_with_the_line_on_which_it_stood_first(
         parse_yaml("a: 1\nb: 2\na: 3\na: 4\n", "here")
     said = "key 'a' stands on line 1 already; keep one of them"
     assert list(told.value.problems) == [f"here line 3: {said}", f"here line 4: {said}"]
+
+
+@pytest.mark.parametrize(("size", "refused"), [(LARGEST_FILE, False), (LARGEST_FILE + 1, True)])
+def test_a_file_that_is_too_large_for_one_is_not_read(tmp_path, size, refused):
+    """30 MB of text took 40 s, at the desk and in a node beside its torque."""
+    path = tmp_path / "log.yaml"
+    path.write_text("a: 1\n" + (size - 5) * "#")
+    if refused:
+        with pytest.raises(
+            InputError, match=r"log\.yaml: 1 MB are no model, crane or scenario .* is it the right file"
+        ):
+            read_yaml(path)
+    else:
+        assert read_yaml(path) == {"a": 1}

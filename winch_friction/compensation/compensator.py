@@ -3,9 +3,10 @@
 import math
 from dataclasses import dataclass
 
+from winch_friction.compensation.carrying_pressure import Carried, CarryingPressure, carried
 from winch_friction.compensation.config import CompensatorConfig, check_on_crane
 from winch_friction.compensation.feedforward import Feedforward
-from winch_friction.compensation.parts import CarryingPressure, DrumTorque, FrictionLaw, Needs, pressure_per_torque
+from winch_friction.compensation.parts import DrumTorque, FrictionLaw, Needs
 from winch_friction.compensation.safe_output import AGAINST_SPEED, SafeOutput
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.friction import FrictionModel
@@ -112,7 +113,7 @@ class FeedforwardCompensator:
         self._law.reset()
         self._replaced: FrictionLaw | None = None  # the law that was published last, until the next sample
         self._last: Feedforward | None = None
-        self._target, self._pressure_per_torque = _Target(), 0.0
+        self._target, self._carried = _Target(), Carried()
         self.lost: tuple[str, ...] = ()  # what the latest sample lacks, or is doubted for, in words
 
     def _absolute(self, config: CompensatorConfig) -> float:
@@ -216,6 +217,7 @@ class FeedforwardCompensator:
             "withheld": self.output.limits.withheld(self.output.absolute, self.output.slew),
             **{f"{name}_clamps": count for name, count in (self.output.limits.counts | pressure).items()},
             **self._counts,
+            "pressure_share": self._carried.share,
             "time_steps_back": self.output.steps_back,
         }
 
@@ -234,8 +236,7 @@ class FeedforwardCompensator:
         return sample.speed_reference if self.config.velocity_source == "reference" else sample.motor_speed
 
     def _aim(self, sample: Sample, dt: float, asked: float) -> bool:
-        """Set the target from a complete sample; False, and the old target kept, when the model does not give a
-        number."""
+        """Set the target from a complete sample; False, and the old target kept, where the model gives no number."""
         held = self.config.velocity_source == "reference" and math.isfinite(asked)
         ahead = self._predictor.step(asked if held else sample.time, self._speed(sample))
         drum_torque = self._load.value(sample) if "drum_torque" in self._law.reads else 0.0
@@ -259,14 +260,13 @@ class FeedforwardCompensator:
         size = abs(bounded) / max(abs(x[0]), UNSURE)
         self._target = _Target(bounded, ahead.speed, drum_torque, size, envelope, time_to_reversal(ahead))
         self._steepest(x, groups, magnitude)
-        self._pressure_per_torque = pressure_per_torque(sample, self.crane, self.config)
+        self._carried = carried(sample, self.crane, self.config)
         self._law.advance(x, groups, dt)
         self._load.learn(sample, torque / self.config.scale if self.config.scale else 0.0, ahead.acceleration, dt)
         return True
 
     def _steepest(self, x: tuple[float, ...], groups: int, magnitude: float) -> None:
-        """Slew no faster than a reversal at this load needs: the sign is spread over `reversal_time`, so the bound of
-        the friction near standstill changes by itself over that time, and no friction changes faster."""
+        """Slew no faster than a reversal at this load needs: nothing of friction changes faster than its sign."""
         slow = (x[0], self.config.reversal_speed, self.config.reversal_speed, *x[3:])
         size = max(self._seed_law.magnitude(slow, groups), magnitude)
         if self.config.reversal_time > 0.0 and math.isfinite(size):
@@ -288,7 +288,7 @@ class FeedforwardCompensator:
     def _feedforward(self, time: float, state: str, valid: bool) -> Feedforward:
         target, torque = self._target, self.output.torque
         return Feedforward(
-            time, torque, self.output.as_pressure(self._pressure_per_torque), target.speed, state, target.drum_torque,
+            time, torque, self.output.as_pressure(self._carried.per_torque), target.speed, state, target.drum_torque,
             self.output.fade.value, valid, self.output.sequence,
         )  # fmt: skip
 

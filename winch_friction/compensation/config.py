@@ -51,7 +51,7 @@ class CompensatorConfig:
     absolute_limit: float = option(
         math.inf, lower=0.0, upper=math.inf, unit="N*m", doc="bound of the torque; never above the crane's own"
     )
-    envelope: float = option(1.3, lower=0.0, upper=2.0, doc="bound of the torque as a multiple of the seed's friction")
+    envelope: float = option(1.3, lower=0.0, upper=1.3, doc="bound of the torque as a multiple of the seed's friction")
     slew_limit: float = option(
         1.5e4, lower=1.0, upper=1e7, unit="N*m/s",
         doc="bound of the torque's rate; never more than a reversal at the present load needs. The torque stays within "

@@ -258,6 +258,8 @@ class CompensatorNode(WinchNode):
         said = f"{state}: {why}" if why else state
         if refusal := status["learned_model_refused"]:
             level, said = max(level, WARN), f"{said}; learned model refused: {refusal}"
+        for warning in self.service.warnings(now):
+            level, said = max(level, WARN), f"{said}; {warning}"
         if self._clock_stands():
             level, said = (
                 max(level, WARN),

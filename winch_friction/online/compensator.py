@@ -246,6 +246,23 @@ class CompensatorService:
             status["state"], status["missing"] = "stale", self.inputs.without_speed(now)
         return status | {"contradictions": "; ".join(self.contradictions), "learned_model_refused": self.refusal}
 
+    def warnings(self, now: float) -> list[str]:
+        """What is as it was asked for, and may not be meant: of a torque that goes out less than its pressure, and more
+        than a model says."""
+        status, config, said = self.status(now), self.law.config, []
+        if (share := float(status["pressure_share"])) < 1.0 and status["state"] in ("active", "fading"):
+            group = config.pressure_group if len(self.inputs.topics.groups) > 1 else "the motors"
+            said.append(
+                f"{share:.0%} of the pressure is fed forward: the displacement of {group} is below min_displacement "
+                f"({config.min_displacement:g})"
+            )
+        gains = [config.gains.get(name, 1.0) for name in self.law.model.term_names]
+        if (share := config.scale * max(gains, default=1.0)) > 1.0:
+            said.append(
+                f"scale and gains compensate {share:.0%} of the model: above 100 % a winch may cycle at reversals"
+            )
+        return said
+
 
 VALID, INVALID = "valid", "invalid"
 

@@ -192,4 +192,5 @@ def _check_number(value: Any, limits: Limits, where: str) -> None:
     if math.isnan(value) and limits.may_be_nan:
         return
     if not limits.lower <= value <= limits.upper:  # false for NaN too
-        raise InputError(f"{where} must be {limits.lower:g} ... {limits.upper:g} {limits.unit}, found {value:g}")
+        unit = "" if limits.unit == "1" else f" {limits.unit}"
+        raise InputError(f"{where} must be {limits.lower:g} ... {limits.upper:g}{unit}, found {value:g}")

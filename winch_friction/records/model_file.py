@@ -106,7 +106,7 @@ class _Entry:
     def __init__(self, parent: Section, parameter: Parameter) -> None:
         section = parent.section(parameter.name)
         factor = factor_to_si(str(section.need("unit")), parameter.unit, section.where)
-        self.name, self.factor = parameter.name, factor
+        self.name, self.factor, self.unit = parameter.name, factor, f" {parameter.unit}".removesuffix(" 1")
         self.value = section.number("value") * factor
         self.std = spread(section) * factor if "std" in section else None
         lower, upper = section.get("lower"), section.get("upper")
@@ -117,9 +117,10 @@ class _Entry:
     def _check_value(self, parameter: Parameter, where: str) -> None:
         low, high = self.bounds or (parameter.lower, parameter.upper)
         if not low <= self.value <= high:
-            unit = "" if parameter.unit == "1" else f" {parameter.unit}"
             other = "" if self.bounds else "; a machine of another size states its own lower and upper beside it"
-            raise InputError(f"{where}: value {self.value:g}{unit} is outside {low:g} ... {high:g}{unit}{other}")
+            raise InputError(
+                f"{where}: value {self.value:g}{self.unit} is outside {low:g} ... {high:g}{self.unit}{other}"
+            )
 
     def _bounds(self, parameter: Parameter, lower: Any, upper: Any, where: str) -> tuple[float, float] | None:
         if lower is None and upper is None:
@@ -127,7 +128,7 @@ class _Entry:
         low = parameter.lower if lower is None else finite(lower, f"{where}: lower") * self.factor
         high = parameter.upper if upper is None else finite(upper, f"{where}: upper") * self.factor
         if low > high:
-            raise InputError(f"{where}: lower {low:g} {parameter.unit} is above upper {high:g} {parameter.unit}")
+            raise InputError(f"{where}: lower {low:g}{self.unit} is above upper {high:g}{self.unit}")
         return low, high
 
 

@@ -1,5 +1,7 @@
 """Whatever is wrong with the inputs of a verb is said at once: one line for each problem, with file and place."""
 
+import contextlib
+import os
 import pickle
 import re
 
@@ -228,3 +230,115 @@ def test_a_log_given_as_a_scenario_is_told_as_no_scenario(tmp_path, capsys):
 def test_a_name_in_capitals_is_known_again(words, capsys):
     assert run(words) == 2
     assert f"did you mean {words[1].lower()}" in said(capsys)[0]
+
+
+# -- of every verb: what it writes to, its crane and model, and all that it reads
+def lines_of(capsys, *words):
+    """The problems that a call is refused with, by the file or option that each begins with."""
+    assert run([str(each) for each in words]) == 2
+    return [line.partition(":")[0].strip("'").split("' is neither")[0] for line in said(capsys)]
+
+
+@pytest.fixture
+def here(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "empty.csv").write_text("")
+    (tmp_path / "there.csv").write_text("mine")
+    (tmp_path / "there.html").write_text("mine")
+    (tmp_path / "params.yaml").write_bytes(b"\xff\xfe")
+    return tmp_path
+
+
+@pytest.mark.parametrize(
+    ("words", "problems"),
+    [
+        ("import empty.csv lost.csv --propose --crane nope --map map.yaml", ["nope", "empty.csv", "lost.csv"]),
+        ("import lost.csv more.csv --propose --map map.yaml", ["lost.csv", "more.csv"]),
+        ("import empty.csv --propose --map there.csv", ["there.csv", "empty.csv"]),
+        ("fleet check lost more --crane nope --model no --out f", ["lost", "more", "nope", "no"]),
+        ("simulate ahc_55t_215 --crane nope --hide foo --hide bar --out there.csv",
+         ["--hide foo", "--hide bar", "there.csv", "nope"]),
+        ("gap lost.csv empty.csv --crane nope --model no --out there.csv",
+         ["--out there.csv/model.yaml", "no", "nope", "lost.csv", "empty.csv"]),
+        ("replay lost.csv --crane nope --model no --out there.csv --params-file params.yaml",
+         ["--out there.csv", "params.yaml", "no", "nope", "lost.csv"]),
+        ("plot lost.csv empty.csv --out there.html", ["--out there.html", "lost.csv", "empty.csv"]),
+        ("plot lost.csv --out there.html --crane nope --model no", ["--out there.html", "no", "nope", "lost.csv"]),
+        ("check lost.csv --crane nope --out there.csv", ["--out there.csv/check.html", "nope", "lost.csv"]),
+        ("convert run lost.csv there.csv a.xls --crane nope", ["--out there.csv", "a.xls", "nope", "lost.csv"]),
+        ("compare one two --crane nope --out there.html", ["--out there.html", "one", "two", "nope"]),
+    ],
+)  # fmt: skip
+def test_what_a_verb_writes_to_hides_nothing_of_what_it_reads(here, capsys, words, problems):
+    assert lines_of(capsys, *words.split()) == problems
+    assert (here / "there.csv").read_text() == (here / "there.html").read_text() == "mine"
+
+
+@pytest.mark.parametrize("verb", ["check RUN --crane crane_150t", "plot RUN", "import RUN --propose --map m.yaml"])
+def test_a_pipe_is_no_run_and_nobody_waits_for_it(here, capsys, verb):
+    os.mkfifo(here / "pipe.csv")
+    assert run(verb.replace("RUN", "pipe.csv").split()) == 2
+    assert said(capsys) == ["pipe.csv: neither a file nor a folder"]
+
+
+@pytest.mark.parametrize("verb", ["check RUN --crane crane_150t", "import RUN --propose --map m.yaml"])
+@pytest.mark.parametrize("at", [1, 7])
+def test_a_quotation_mark_that_nothing_closes_is_told_by_its_line(here, capsys, verb, at):
+    """It was "line 657: field larger than field limit (131072)"."""
+    lines = [",".join(HEAD), *(f"{0.02 * k:.2f},60,12,1000" for k in range(9000))]
+    lines[at - 1] = lines[at - 1].replace("60", '"60').replace("motor_speed", '"motor_speed')
+    (here / "run.csv").write_text("\n".join(lines))
+    assert run(verb.replace("RUN", "run.csv").split()) == 2
+    (line,) = said(capsys)
+    assert line.startswith(f"run.csv: line {at}: a cell that begins here has no end")
+
+
+@pytest.mark.parametrize("words", ["a6vm215_crane2", "churning", "churning --json"])
+def test_a_page_is_there_whoever_stops_reading_what_is_printed(here, monkeypatch, words):
+    """`show MODEL --out PAGE | head` wrote none, and said nothing."""
+
+    def closed(*_, **__):
+        raise BrokenPipeError
+
+    monkeypatch.setattr("builtins.print", closed)
+    monkeypatch.setattr("winch_friction.cli.show.show_json", closed)
+    with contextlib.suppress(BrokenPipeError):
+        run(["show", *words.split(), "--out", "page.html"])
+    assert "<html" in (here / "page.html").read_text()
+
+
+@pytest.mark.parametrize(
+    ("corrections", "places"),
+    [
+        ("{pressure_offset: {value: 1, unit: furlong}, tare_load: {value: 1, unit: bar}}",
+         ["corrections: pressure_offset: unit 'furlong'", "corrections: tare_load: unit 'bar'"]),
+        ("{nope: {value: 1}, tare_load: {value: abc, unit: t}}",
+         ["corrections: nope: correction 'nope' is not known", "corrections: tare_load: value must be a finite number",
+          "corrections.nope: key 'unit' is missing"]),
+    ],
+)  # fmt: skip
+def test_every_correction_that_is_none_is_told(here, capsys, corrections, places):
+    model = (config_directory() / "models" / "a6vm215_crane2.yaml").read_text()
+    (here / "m.yaml").write_text(f"{model}\ncorrections: {corrections}\n")
+    assert run(["show", "m.yaml"]) == 2
+    found = said(capsys)
+    assert len(found) == len(places)
+    assert all(each.startswith(f"m.yaml: {place}") for each, place in zip(found, places, strict=True))
+
+
+def test_a_term_that_stands_twice_is_told_once(here, capsys):
+    model = yaml.safe_load((config_directory() / "models" / "a6vm215_crane2.yaml").read_text())
+    model["terms"].append(model["terms"][0])
+    (here / "m.yaml").write_text(yaml.safe_dump(model))
+    assert run(["show", "m.yaml"]) == 2
+    assert len(said(capsys)) == 1
+
+
+@pytest.mark.parametrize(("words", "line"), [
+    ("a6vm215_crane2 --load -5", "show: --load -5 t: a hanging mass is a number from 0 on"),
+    ("empty.yaml", "show: empty.yaml holds no model, crane or scenario: these are mappings of keys (YAML)"),
+])  # fmt: skip
+def test_what_cannot_be_shown_is_told_as_it_was_given(here, capsys, words, line):
+    (here / "empty.yaml").write_text("")
+    assert run(["show", *words.split()]) == 2
+    assert said(capsys) == [line]

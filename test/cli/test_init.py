@@ -72,9 +72,20 @@ def test_a_pressure_is_rated_of_hydraulic_motors_alone(capsys):
     electric = ["--drive", "electric", "--name", "w", "--load", "5", "--motors", "1", "--gear-ratio", "90", "--radius",
                 "0.3", "--layers", "4", "--wire", "20", "--inertia", "0.4"]  # fmt: skip
     assert run(["init", "crane", *electric, "--rated-pressure", "300", "--rated-speed", "0"]) == 2
-    assert capsys.readouterr().err.strip() == (
-        "winch-friction: init crane: --rated-pressure is not of --drive electric; --rated-speed 0.0 must be above 0"
-    )
+    assert capsys.readouterr().err.splitlines() == [
+        "winch-friction: init crane: --rated-pressure is not of --drive electric",
+        "winch-friction: init crane: --rated-speed 0.0 must be above 0",
+    ]
+
+
+def test_of_no_motors_none_is_active_and_nothing_is_said_of_that(capsys):
+    """`--active 9 must be 0 ... -1`."""
+    hydraulic = ["--name", "w", "--load", "5", "--motors", "0", "--active", "9", "--gear-ratio", "90",
+                 "--radius", "0.3", "--layers", "4", "--wire", "20", "--displacement", "160"]  # fmt: skip
+    assert run(["init", "crane", *hydraulic]) == 2
+    said = capsys.readouterr().err
+    assert "--motors 0 must be above 0" in said
+    assert "--active" not in said
 
 
 @pytest.mark.parametrize(

@@ -60,7 +60,7 @@ def test_all_that_lacks_or_is_of_another_drive_is_said_at_once(capsys):
     assert "--active" not in said
     assert init("electric", "--displacement", "160", "--active", "1", "--torque-constant", "2") == 2
     said = capsys.readouterr().err
-    assert said.count("\n") == 1
+    assert said.count("\n") == 3
     for flag in ("active", "displacement", "torque-constant"):
         assert f"--{flag} is not of --drive electric" in said
 

@@ -6,7 +6,7 @@ from dataclasses import replace
 import pytest
 
 from winch_friction.compensation import CompensatorConfig, FeedforwardCompensator
-from winch_friction.compensation.carrying_pressure import CarryingPressure, carried
+from winch_friction.compensation.parts import CarryingPressure, carried
 from winch_friction.physics.channels import BAR
 from winch_friction.physics.signals import GroupSample, Sample
 
@@ -99,7 +99,7 @@ def test_motors_that_are_swung_out_are_asked_for_nothing(crane, seed, share, pre
 def test_a_crane_of_unknown_motors_that_are_swung_out_is_answered(crane):
     groups = {"active": GroupSample(50 * BAR, 25 * BAR, 0.0)}
     bare = replace(crane, max_displacement=0.0)
-    assert carried(Sample(0.0, 0.0, groups=groups), bare, CompensatorConfig()).per_torque == 0.0
+    assert carried(Sample(0.0, 0.0, groups=groups), bare, CompensatorConfig())[0] == 0.0
 
 
 # -- the part itself
@@ -137,7 +137,7 @@ def test_a_group_that_is_not_there_carries_nothing():
 def test_the_group_that_was_set_carries_it_or_the_only_one(crane, groups, name, carries, share, counted):
     """At half the floor half its pressure; swung out none, and none past centre, where it would push the other way."""
     members = {each: GroupSample(50 * BAR, 25 * BAR, share * crane.max_displacement) for each in groups}
-    found = carried(Sample(0.0, 0.0, groups=members), crane, CompensatorConfig(pressure_group=name)).per_torque
+    found = carried(Sample(0.0, 0.0, groups=members), crane, CompensatorConfig(pressure_group=name))[0]
     motors = crane.groups.get(carries, math.inf)
     assert found == pytest.approx(1.0 / (motors * counted * crane.max_displacement))
 

@@ -5,8 +5,8 @@ from dataclasses import replace
 
 import pytest
 
-from winch_friction.compensation.carrying_pressure import carried
 from winch_friction.compensation.config import CompensatorConfig
+from winch_friction.compensation.parts import carried
 from winch_friction.physics.channels import GRAVITY, LIMITS
 from winch_friction.physics.signals import GroupSample, Sample
 from winch_friction.physics.winch.operating_point import LOAD_MARGIN, ChannelRanges, fastest_command
@@ -26,14 +26,14 @@ def test_a_group_that_is_swung_out_carries_no_more_pressure_than_its_floor_does(
 
     def asked(share):
         group = GroupSample(5e6, 2e6, share * crane_150t.max_displacement)
-        return carried(Sample(0.0, 10.0, 10.0, {"active": group, "passive": group}), crane_150t, config).per_torque
+        return carried(Sample(0.0, 10.0, 10.0, {"active": group, "passive": group}), crane_150t, config)[0]
 
     motors = crane_150t.motor_count("active")
     assert asked(1.0) == pytest.approx(1.0 / (motors * crane_150t.max_displacement))
     assert asked(0.2) == pytest.approx(asked(1.0) / 0.2)
     assert asked(0.01) == pytest.approx(0.05 * asked(0.2))
     electric = Sample(0.0, 10.0, 10.0, {})
-    assert carried(electric, crane_150t, config).per_torque == 0.0
+    assert carried(electric, crane_150t, config)[0] == 0.0
 
 
 # of the shipped crane, by hand: 450 bar, 4800 rpm, 150 t, 11 motors of 215 cm^3/rev, six layers

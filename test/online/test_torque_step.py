@@ -122,6 +122,12 @@ def test_a_reading_may_step_back_where_no_sample_comes(hole: float, over: bool, 
     assert "passive.displacement" in next(iter(found.values()))
 
 
+def test_a_step_back_in_a_hole_in_which_the_shaft_reverses_is_not_believed() -> None:
+    """Friction steps readings as well then, and nobody has seen which it was."""
+    lost = (each for each in winch() if not 29.8 <= each.time < 30.2)
+    assert list(said(lost, times("passive", "displacement", 0.9), end=30.0).values())[-1] != ""
+
+
 def test_a_hole_alone_takes_nothing_back_and_tells_nothing() -> None:
     lost = [each for each in winch(40.0) if not TO <= each.time < TO + 0.4]
     assert said(iter(lost)) == {}

@@ -47,14 +47,18 @@ def command(
     from winch_friction.cli.provenance import provenance_of
     from winch_friction.commissioning.commissioning import check
     from winch_friction.commissioning.other_cranes import cranes_near
+    from winch_friction.physics.errors import Problems
     from winch_friction.records.input_mapping import bag_options_of
     from winch_friction.records.runs import refuse_same_names
 
     load_terms(terms_file)
     paths = run_paths(runs)
-    refuse_unwritable(out and out / "check.html")
-    refuse_foreign(out, ("check.html", "check.json"), "check.json", "winch_friction.check/")
-    read, winch, seed = read_inputs(paths, crane, model, bag_options_of(params_file, namespace))
+    problems = Problems()
+    with problems:
+        refuse_unwritable(out and out / "check.html")
+        refuse_foreign(out, ("check.html", "check.json"), "check.json", "winch_friction.check/")
+    options = bag_options_of(params_file, namespace)
+    read, winch, seed = read_inputs(paths, crane, model, options, problems=problems)
     refuse_same_names(read, paths)
     near = [*paths, *([Path(crane)] if crane else [])]
     result = check(read, winch, seed, partial(cranes_near, near))

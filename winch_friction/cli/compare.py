@@ -42,16 +42,21 @@ def command(
     from winch_friction.cli.inputs import run_paths
     from winch_friction.cli.show import curve_crane, say_beyond
     from winch_friction.physics.winch.model_curve import usual_loads
+    from winch_friction.records.crane_file import load_crane
     from winch_friction.records.input_mapping import bag_options_of
     from winch_friction.records.model_file import load_model
 
     load_terms(terms_file)
-    refuse_other_kind(out, PAGE, "a page")
-    refuse_existing(overwrite, out)
     problems, models = Problems(), []
+    with problems:
+        refuse_other_kind(out, PAGE, "a page")
+        refuse_existing(overwrite, out)
     for name in (first, second):
         with problems:
             models.append(load_model(name))
+    with problems:
+        if crane:
+            load_crane(crane)
     problems.say()
     one, two = models
     _refuse_two_cranes(one, two)

@@ -33,14 +33,21 @@ def run(
 
       winch-friction convert run log.csv log.parquet log.mcap
     """
+    from winch_friction.physics.errors import Problems
     from winch_friction.records.crane_file import load_crane
     from winch_friction.records.input_mapping import bag_options_of
     from winch_friction.records.runs import read_run, refuse_unknown_kind
 
+    problems, winch = Problems(), None
     for each in out:
-        refuse_input_as_output(refuse_unknown_kind(each), [source])
-    refuse_existing(overwrite, *out)
-    content = read_run(source, load_crane(crane) if crane else None, **bag_options_of(params_file, namespace))
+        with problems:
+            refuse_input_as_output(refuse_unknown_kind(each), [source])
+            refuse_existing(overwrite, each)
+    with problems:
+        winch = load_crane(crane) if crane else None
+    with problems:
+        content = read_run(source, winch, **bag_options_of(params_file, namespace))
+    problems.say()
     show_warnings(content.warnings)
     _write(content, out, as_json)
 

@@ -13,7 +13,7 @@ from winch_friction.cli.inputs import progress
 from winch_friction.cli.names import complete_crane, complete_model
 from winch_friction.cli.optional import OptionalInt, OptionalTexts
 from winch_friction.fleet.ledger import Ledger, Outcome, verdict_of
-from winch_friction.physics.errors import InputError
+from winch_friction.physics.errors import InputError, Problems
 
 if TYPE_CHECKING:
     from winch_friction.fleet.recordings import Recording
@@ -62,11 +62,21 @@ def command(
     from winch_friction.cli.inputs import refuse_foreign, refuse_unwritable
     from winch_friction.cli.provenance import provenance_of
     from winch_friction.fleet.recordings import find_recordings
+    from winch_friction.records.crane_file import load_crane
+    from winch_friction.records.model_file import load_model
 
-    refuse_unwritable(out / "fleet.json")
-    refuse_foreign(out, ("fleet.json", "report.html"), "fleet.jsonl")
+    problems = Problems()
+    with problems:
+        refuse_unwritable(out / "fleet.json")
+        refuse_foreign(out, ("fleet.json", "report.html"), "fleet.jsonl")
     options = _storage_options(storage or [])
-    recordings, tables = _without_tables(find_recordings(sources, options, own_folders(out)))
+    with problems:
+        recordings, tables = _without_tables(find_recordings(sources, options, own_folders(out)))
+    for name, load in ((crane, load_crane), (model, load_model)):
+        with problems:
+            if name and "{" not in name:  # else each recording's own
+                load(name)
+    problems.say()
     tasks = plan(verb, recordings, out, crane, model, _flags(option or []), options)
     outcomes = _done(tasks, Ledger(out / "fleet.jsonl"), workers, scheduler, anew)
     content = {"verb": verb, "outcomes": [asdict(each) for each in outcomes], **_over_time(outcomes, out)}

@@ -26,7 +26,7 @@ from winch_friction.cli.inputs import (
 )
 from winch_friction.cli.names import complete_crane, complete_model
 from winch_friction.cli.optional import Namespace, OptionalPath, OptionalPaths, Overwrite
-from winch_friction.physics.errors import InputError
+from winch_friction.physics.errors import InputError, Problems
 
 HELP = """Find where simulation and measurement disagree, name the missing effect, add it, show the gap shrink.
 
@@ -187,9 +187,11 @@ def run_gap(
     if not paths:
         raise InputError("no run given; name at least one run file, or use --blind N")
     paths = run_paths(paths)
-    for name in ("model.yaml", "gap.json", "addition.csv"):
-        refuse_input_as_output(out / name, [model, *paths])
-    refuse_foreign(out, WRITTEN, "gap.json", "winch_friction.gap/", overwrite)
+    problems = Problems()
+    with problems:
+        for name in ("model.yaml", "gap.json", "addition.csv"):
+            refuse_input_as_output(out / name, [model, *paths])
+        refuse_foreign(out, WRITTEN, "gap.json", "winch_friction.gap/", overwrite)
     options = GapOptions(holdout=holdout, seed=seed, effects_file=effects)
     if effects is not None:
         load_file(effects)  # before the model, which may be one that these effects have repaired
@@ -197,7 +199,7 @@ def run_gap(
     model = model or _usual_model(crane, paths)
     crane = load_model(MODEL).crane if assumed else crane
     conventions = bag_options_of(params_file, namespace) if params_file or namespace else {}
-    read, loaded_crane, seed_model = read_inputs(paths, crane, model, conventions, unstated)
+    read, loaded_crane, seed_model = read_inputs(paths, crane, model, conventions, unstated, problems)
     warned = [*(each for run in read for each in run.warnings), *same_recordings(read)]
     show_warnings(warned)
     refuse_same_names(read, paths)

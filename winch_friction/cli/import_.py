@@ -10,7 +10,7 @@ from winch_friction.cli.console import show_json
 from winch_friction.cli.inputs import progress, show_warnings
 from winch_friction.cli.names import complete_crane
 from winch_friction.importing.mapping import LogMap
-from winch_friction.physics.errors import InputError
+from winch_friction.physics.errors import InputError, Problems
 
 HELP = """Bring logs of any origin into run files.
 
@@ -84,26 +84,36 @@ def propose_map(
     from winch_friction.cli.inputs import refuse_unwritable
     from winch_friction.importing.map_text import map_text
     from winch_friction.importing.propose import propose
+    from winch_friction.importing.reading import read_log
     from winch_friction.records.atomic import taken, write_text
     from winch_friction.records.crane_file import load_crane
 
-    if taken(map_file, overwrite) and not overwrite:
-        raise InputError(f"{map_file}: exists; give another name, or --overwrite")
-    refuse_unwritable(map_file, option="--map")
+    problems, winch = Problems(), None
+    with problems:
+        if taken(map_file, overwrite) and not overwrite:
+            raise InputError(f"{map_file}: exists; give another name, or --overwrite")
+        refuse_unwritable(map_file, option="--map")
+    with problems:
+        winch = load_crane(crane) if crane else None
+    if problems.found:
+        for log in logs:  # an answer needs all of them: what keeps each from being read is all there is to say
+            with problems:
+                read_log(log)
+    problems.say()
     watched = lambda paths: progress(paths, "reading logs")
-    proposal = propose(logs, load_crane(crane) if crane else None, crane, settings, watched)
-    log_map, problems = proposal.log_map, list(proposal.problems)
+    proposal = propose(logs, winch, crane, settings, watched)
+    log_map, open_ones = proposal.log_map, list(proposal.problems)
     write_text(map_file, map_text(log_map))
     if as_json:
-        show_json(_as_content(log_map, problems, proposal.notes, map_file))
+        show_json(_as_content(log_map, open_ones, proposal.notes, map_file))
     else:
         _show(log_map)
         show_warnings(proposal.notes)
         if log_map.unused:
             print(f"not used: {', '.join(log_map.unused)}")
         print(f"written: {map_file}")
-    if problems:
-        raise InputError(f"{map_file} needs an answer: {' | '.join(problems)}")
+    if open_ones:
+        raise InputError(f"{map_file} needs an answer: {' | '.join(open_ones)}")
 
 
 def _show(log_map: LogMap) -> None:

@@ -55,14 +55,14 @@ class CraneFacts:
         values = {name: getattr(self, name) for name in numbers if name in wanted or getattr(self, name) is not None}
         wrong += [f"--{_flag(name)} {value!r} must be above 0" for name, value in values.items()
                   if value is None or not 0 < value < float("inf")]  # fmt: skip
-        if not 0 <= self.active < max(self.motors, 1):
+        if self.motors > 0 and not 0 <= self.active < self.motors:
             wrong.append(
                 f"--active {self.active} must be 0 ... {self.motors - 1}: the others are passive; where all of them "
                 "compensate they are one group: 0"
             )
         wrong += [] if wrong else self._unlikely()
         if wrong:
-            raise InputError(f"init crane: {'; '.join(wrong)}")
+            raise InputError(*(f"init crane: {each}" for each in wrong))
 
     def _unlikely(self) -> list[str]:
         """Figures that are another unit's: outside what is built, or motors that cannot hold the rated load."""

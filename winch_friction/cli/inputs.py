@@ -105,12 +105,12 @@ def read_inputs(
     model: str,
     options: Mapping[str, Any] | None = None,
     remarks: Callable[[Any], Iterable[str]] = lambda model: (),
+    problems: Problems | None = None,
 ) -> tuple[list[Any], Any, Any]:
-    """The runs, their crane and the model (None without a name); whatever is wrong with any of them is said at once.
-
-    `options` are for bags; `remarks` are what is to be told of the model on stderr.
+    """The runs, their crane and the model (None without a name); whatever is wrong with any of them is said at once,
+    with the `problems` there are. `options` are for bags; `remarks` are what is to be told of the model on stderr.
     """
-    problems = Problems()
+    problems = problems or Problems()
     winch, seed = machine_of(crane, model, paths, problems)
     runs: list[Any] = []
     if seed is not None:

@@ -35,21 +35,26 @@ def command(
       winch-friction plot bag/ --crane crane_150t --model a6vm215_crane2
     """
     from winch_friction.cli.inputs import PAGE, read_all, read_inputs, refuse_existing, refuse_other_kind, run_paths
-    from winch_friction.physics.errors import InputError
+    from winch_friction.physics.errors import InputError, Problems
     from winch_friction.records.input_mapping import bag_options_of
     from winch_friction.report.run_page import channel_rows, write_run_page
 
     if model and not crane:
         raise InputError("plot: --model needs --crane")
     load_terms(terms_file)
-    refuse_other_kind(out, PAGE, "a page")
-    refuse_existing(overwrite, out)
+    problems = Problems()
+    with problems:
+        refuse_other_kind(out, PAGE, "a page")
+        refuse_existing(overwrite, out)
     paths = run_paths(runs)
     options = bag_options_of(params_file, namespace)
     if crane:
-        read, machine, drawn = read_inputs(paths, crane, model, options)
+        read, machine, drawn = read_inputs(paths, crane, model, options, problems=problems)
     else:
-        read, machine, drawn = read_all(paths, None, **options), None, None
+        machine = drawn = None
+        with problems:
+            read = read_all(paths, None, **options)
+        problems.say()
     for run in read:
         show_warnings(run.warnings)
     page = write_run_page(out, read, machine, drawn)

@@ -73,18 +73,24 @@ def command(
             f"--picture {picture}: a report is written as .html, a still picture as .png, .svg, .pdf or .jpg; give a "
             "name that ends so"
         )
-    refuse_input_as_output(out, [recording, model, crane])
-    refuse_input_as_output(picture, [recording, model, crane])
-    refuse_existing(overwrite, out, picture)
+    problems = Problems()
+    for written in (out, picture):
+        with problems:
+            refuse_input_as_output(written, [recording, model, crane])
+            refuse_existing(overwrite, written)
     if out is not None:
-        refuse_unknown_kind(out)
+        with problems:
+            refuse_unknown_kind(out)
     asked = bag_options(remap or [], joint, pressure_reference, namespace)
     _refuse_bag_options(recording, {"remap": remap, "joint": joint, "pressure-reference": pressure_reference,
                                     "namespace": "" if params_file else namespace})  # fmt: skip
-    options = bag_options_of(params_file, namespace) | asked
+    options = asked
+    with problems:
+        options = bag_options_of(params_file, namespace) | asked
     load_terms(terms_file)
-    settings = settings_from_file(params_file, namespace) if params_file else None
-    problems = Problems()
+    settings = None
+    with problems:
+        settings = settings_from_file(params_file, namespace) if params_file else None
     winch, seed = machine_of(crane, model, [recording], problems)
     with problems:
         if problems.found:

@@ -71,7 +71,10 @@ def _of_file(name: str) -> str:
 
     if path.suffix.lower() in RUN_SUFFIXES:
         raise InputError(f"show: {name} is a run file by its name; winch-friction plot draws runs")
-    said = kind_said(read_yaml(path)) or "scenario"
+    content = read_yaml(path)
+    if not isinstance(content, dict):
+        raise InputError(f"show: {name} holds no model, crane or scenario: these are mappings of keys (YAML)")
+    said = kind_said(content) or "scenario"
     if said not in SHOWN:
         raise InputError(f"show: {name} is a {said} file, and show knows files of models, cranes and scenarios")
     return said
@@ -127,9 +130,17 @@ def _model(name: str, crane: str, load: float | None, out: Path | None, as_json:
     if load is None:
         lifts = machine.drive.hydraulic or machine.rated_load  # a drive may lift nothing
         load = usual_loads(machine)[1] / 1e3 if lifts else 0.0
+    if load < 0.0:
+        raise InputError(f"show: --load {load:g} t: a hanging mass is a number from 0 on")
     curve = model_curve(model, machine, load=1e3 * load)
     say_beyond("--load", [load], machine)
     rpm = curve.speed / RPM
+    if out is not None:  # before a word is printed: whoever reads along may close the pipe
+        from winch_friction.report.curves import write_model_page
+
+        drawn = (each / 1e3 for each in usual_loads(machine))
+        curves = [model_curve(model, machine, load=1e3 * each) for each in sorted({*drawn, load})]
+        write_model_page(out, model, curves, machine.name)
     if as_json:
         parameters = {
             p.name: {"value": v, "std": s, "unit": p.unit, "meaning": p.doc}
@@ -147,12 +158,8 @@ def _model(name: str, crane: str, load: float | None, out: Path | None, as_json:
         )
     else:
         _draw_model(model, machine, curve, rpm)
-    if out is not None:
-        from winch_friction.report.curves import write_model_page
-
-        drawn = (each / 1e3 for each in usual_loads(machine))
-        curves = [model_curve(model, machine, load=1e3 * each) for each in sorted({*drawn, load})]
-        print(f"wrote {write_model_page(out, model, curves, machine.name)}")
+        if out is not None:
+            print(f"wrote {out}")
 
 
 def _draw_model(model: Any, machine: Any, curve: Any, rpm: Any) -> None:
@@ -182,6 +189,8 @@ def show_physics(name: str, out: Path | None, as_json: bool) -> None:
     from winch_friction.physics.friction import registered_terms
 
     text, term = effect_text(name), registered_terms().get(name)
+    if out is not None:
+        _write_page(text, term, out)
     if as_json:
         show_json(
             {
@@ -217,7 +226,7 @@ def show_physics(name: str, out: Path | None, as_json: bool) -> None:
         rows = [[p.name, p.unit, p.typical, f"{p.lower:g} ... {p.upper:g}", p.doc] for p in term.parameters]
         show_table("parameters, SI", ("parameter", "unit", "typical", "bounds", "meaning"), rows)
     if out is not None:
-        _write_page(text, term, out)
+        print(f"wrote {out}")
 
 
 def _write_page(text: Any, term: Any, out: Path) -> None:
@@ -228,7 +237,7 @@ def _write_page(text: Any, term: Any, out: Path) -> None:
     sections = [TextSection("What it is", paragraph(text.physics) + paragraph(f"What to do: {text.look}"))]
     if term is not None:
         sections.append(TextSection("Equation", term_html(term)))
-    print(f"wrote {write_report(out, text.title, sections, text.name)}")
+    write_report(out, text.title, sections, text.name)
 
 
 def _content(name: str, what: str, as_json: bool) -> None:

@@ -62,13 +62,15 @@ def command(
     from winch_friction.simulation.plant_file import load_plant, refuse_other_plant
 
     load_terms(terms_file)
-    hidden = [_effect(text) for text in hide or []]
+    problems, hidden = Problems(), list[tuple[str, float]]()
+    for text in hide or []:
+        with problems:
+            hidden.append(_effect(text))
     if effects:
         _list_effects(as_json)
         return
     if not scenario:
         raise InputError("which scenario? Give a file, a shipped name, gap_campaign or paper_tests")
-    problems = Problems()
     plan: Any = []
     with problems:
         plan = _plan(scenario, seed, out, kind)

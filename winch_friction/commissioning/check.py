@@ -25,7 +25,7 @@ from winch_friction.commissioning.channels import (
     uneven_once,
 )
 from winch_friction.commissioning.diagnose import diagnose
-from winch_friction.commissioning.kinematics import Fit, agreements, fit_of, ways
+from winch_friction.commissioning.kinematics import Fit, agreements, exchanged_columns, fit_of, ways
 from winch_friction.commissioning.likeliest import likeliest_mistake
 from winch_friction.commissioning.mistakes import LARGEST_TARE, PRESSURE_UNITS
 from winch_friction.commissioning.other_cranes import known_cranes, same_machine
@@ -241,8 +241,7 @@ def diagnosed(
     """The findings of `quick_check` and how the runs fit: diagnosed where they are doubted or `ranked`."""
     others = cache(others)
     clock = uneven_once([finding for run in runs for finding in clock_findings(run)], len(runs))
-    jumped = {name for finding in clock if finding.contradicts for name in finding.runs}
-    usable = [run for run in runs if run.name not in jumped]
+    usable = [run for run in runs if not any(run.name in each.runs for each in clock if each.contradicts)]
     own = model if model is not None and model.corrections else None
     views = views_of([corrected(run, crane, own) if own else (run, crane) for run in usable])
     fit = fit_of(views, model)
@@ -251,8 +250,10 @@ def diagnosed(
         diagnosis = diagnose(fit, views, crane, model, others())
     told = [{each.channel: each.ratio for each in agreements(view)} for view in views]
     slow = [w for run, rates in zip(usable, told, strict=True) for w in told_slow_clock(run, rates | ways(run, crane))]
+    exchanged = [Finding("error", "exchanged", said, at, (name,)) for said, at, name in exchanged_columns(runs)]
     readings = [*reading_findings(runs, crane)]
     findings = [
+        *exchanged,
         *_named_crane(runs, crane, others),
         *_counts(crane),
         *(each for each in readings if each.cause in FIRST_READINGS),
@@ -261,7 +262,7 @@ def diagnosed(
         *(dead_findings(usable, views) if crane.drive.hydraulic else ()),
         *(lone_units(usable) if crane.drive.hydraulic else ()),
         *(group_findings(usable, crane, fit.contradicting) if crane.drive.hydraulic else ()),
-        *(() if slow or diagnosis is None else likeliest_mistake(diagnosis, crane)),
+        *(() if slow or exchanged or diagnosis is None else likeliest_mistake(diagnosis, crane)),
         *(each for each in readings if each.cause not in FIRST_READINGS),
         *(finding for run in runs if crane.drive.hydraulic for finding in frozen_findings(run)),
         *(finding for run in runs for finding in cell_findings(run)),

@@ -2,7 +2,7 @@
 reference, wire length and heave tell it again), and no quantity lies beyond what its machine can do.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -207,3 +207,40 @@ def score_of(view: RunView, model: FrictionModel | None) -> float:
 
 def _beside_balance(view: RunView) -> float:
     return sum(each.score for each in agreements(view)) + range_score(view)
+
+
+# -- the motor's speed in another column: exchanged columns are two mistakes to whoever looks at units alone
+FASTEST = 600.0  # rad/s: 5700 rpm, no motor of a winch turns faster
+EXCHANGED = 0.95  # correlation of a speed with its command, or with the rate of its own angle
+MAY_BE = ("hook_load", "heave_velocity", "oil_temperature", "wire_out", "motor_torque", "rope_force")
+
+
+def exchanged_columns(runs: Sequence[Run]) -> Iterator[tuple[str, str, str]]:
+    """Of runs whose motor_speed turns as no motor does, while another column goes as the command or the shaft's angle:
+    what is said, that column, the run's name."""
+    for run in runs:
+        speed = run.columns.get("motor_speed")
+        if speed is None or not np.nanmedian(np.abs(speed)) > FASTEST:
+            continue
+        for name in (each for each in MAY_BE if each in run.columns):
+            other = run[name]
+            if np.nanmax(np.abs(other)) <= FASTEST and any(_follows(other, each) for each in _speeds(run)):
+                said = (
+                    f"{run.name}: motor_speed is {np.nanmedian(np.abs(speed)):.4g} rad/s, and {name} goes as the motor "
+                    f"does: are these two columns exchanged?"
+                )
+                yield said, name, run.name
+
+
+def _speeds(run: Run) -> Iterator[FloatArray]:
+    if "speed_reference" in run.columns:
+        yield run["speed_reference"]
+    if "shaft_angle" in run.columns:
+        yield np.gradient(run["shaft_angle"], run.time)
+
+
+def _follows(one: FloatArray, two: FloatArray) -> bool:
+    good = np.isfinite(one) & np.isfinite(two)
+    if good.sum() < FEWEST or min(np.ptp(one[good]), np.ptp(two[good])) <= 0.0:
+        return False
+    return bool(np.corrcoef(one[good], two[good])[0, 1] >= EXCHANGED)

@@ -3,10 +3,9 @@
 import math
 from dataclasses import dataclass
 
-from winch_friction.compensation.carrying_pressure import Carried, CarryingPressure, carried
 from winch_friction.compensation.config import CompensatorConfig, check_on_crane
 from winch_friction.compensation.feedforward import Feedforward
-from winch_friction.compensation.parts import DrumTorque, FrictionLaw, Needs
+from winch_friction.compensation.parts import CarryingPressure, DrumTorque, FrictionLaw, Needs, carried
 from winch_friction.compensation.safe_output import AGAINST_SPEED, SafeOutput
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.friction import FrictionModel
@@ -113,7 +112,7 @@ class FeedforwardCompensator:
         self._law.reset()
         self._replaced: FrictionLaw | None = None  # the law that was published last, until the next sample
         self._last: Feedforward | None = None
-        self._target, self._carried = _Target(), Carried()
+        self._target, self._pressure_per_torque, self._pressure_share = _Target(), 0.0, 1.0
         self.lost: tuple[str, ...] = ()  # what the latest sample lacks, or is doubted for, in words
 
     def _absolute(self, config: CompensatorConfig) -> float:
@@ -217,7 +216,7 @@ class FeedforwardCompensator:
             "withheld": self.output.limits.withheld(self.output.absolute, self.output.slew),
             **{f"{name}_clamps": count for name, count in (self.output.limits.counts | pressure).items()},
             **self._counts,
-            "pressure_share": self._carried.share,
+            "pressure_share": self._pressure_share,
             "time_steps_back": self.output.steps_back,
         }
 
@@ -260,7 +259,7 @@ class FeedforwardCompensator:
         size = abs(bounded) / max(abs(x[0]), UNSURE)
         self._target = _Target(bounded, ahead.speed, drum_torque, size, envelope, time_to_reversal(ahead))
         self._steepest(x, groups, magnitude)
-        self._carried = carried(sample, self.crane, self.config)
+        self._pressure_per_torque, self._pressure_share = carried(sample, self.crane, self.config)
         self._law.advance(x, groups, dt)
         self._load.learn(sample, torque / self.config.scale if self.config.scale else 0.0, ahead.acceleration, dt)
         return True
@@ -288,7 +287,7 @@ class FeedforwardCompensator:
     def _feedforward(self, time: float, state: str, valid: bool) -> Feedforward:
         target, torque = self._target, self.output.torque
         return Feedforward(
-            time, torque, self.output.as_pressure(self._carried.per_torque), target.speed, state, target.drum_torque,
+            time, torque, self.output.as_pressure(self._pressure_per_torque), target.speed, state, target.drum_torque,
             self.output.fade.value, valid, self.output.sequence,
         )  # fmt: skip
 

@@ -7,10 +7,8 @@ torque stays inside its limits, moves no faster than the slew limit, and goes to
 import math
 from dataclasses import dataclass, field
 
-from winch_friction.compensation.carrying_pressure import CarryingPressure
-from winch_friction.compensation.parts import Bridge, Fade, TorqueLimits
+from winch_friction.compensation.parts import RATED_PRESSURE, Bridge, CarryingPressure, Fade, TorqueLimits
 from winch_friction.physics.errors import InputError
-from winch_friction.physics.winch.operating_point import RATED_PRESSURE
 
 ROUNDING = 1e-6  # s; a sample that is as old as it may be is no silence (a Unix time has 2e-7 s)
 LONGEST_STEP = 0.5  # s; a gap in the samples does not count as more than this for fades and slew

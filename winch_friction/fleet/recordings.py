@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path, PurePosixPath
 from typing import Any
 
-from winch_friction.physics.errors import InputError
+from winch_friction.physics.errors import InputError, Problems
 
 RUN_SUFFIXES = (".csv", ".parquet", ".pq", ".mcap", ".db3")
 BAG_FILE = "metadata.yaml"
@@ -47,11 +47,14 @@ def find_recordings(
     Raises `InputError` for a source without any recording and for two recordings of one crane and name.
     """
     found: dict[str, Recording] = {}
+    problems = Problems()
     for source in sources:
-        here = [each for each in _below(str(source), dict(storage or {})) if not _lies_in(each, without)]
-        if not here:
-            raise InputError(f"{source}: no recording there; looked for {', '.join(RUN_SUFFIXES)} and bag folders")
-        found |= {each.address: each for each in here}
+        with problems:
+            here = [each for each in _below(str(source), dict(storage or {})) if not _lies_in(each, without)]
+            if not here:
+                raise InputError(f"{source}: no recording there; looked for {', '.join(RUN_SUFFIXES)} and bag folders")
+            found |= {each.address: each for each in here}
+    problems.say()
     recordings = sorted(found.values(), key=lambda each: (each.crane, each.name))
     _refuse_twins(recordings)
     return recordings

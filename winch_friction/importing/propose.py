@@ -29,7 +29,7 @@ from winch_friction.importing.units import (
     usual_units,
 )
 from winch_friction.physics.channels import CM3_PER_REV
-from winch_friction.physics.errors import InputError, counted
+from winch_friction.physics.errors import InputError, Problems, counted
 from winch_friction.physics.signals import column_unit
 from winch_friction.physics.winch.crane import Crane
 from winch_friction.records.run_checks import SPARSE, rows_between
@@ -61,7 +61,11 @@ def propose(
     Raises `InputError` only for logs that cannot be read at all and for settings that say nothing.
     """
     clocks, settings = _said_clocks(settings)
-    logs = [read_log(path, clocks) for path in watched(paths)]
+    logs, unread = list[Log](), Problems()
+    for path in watched(paths):
+        with unread:
+            logs.append(read_log(path, clocks))
+    unread.say()
     draft = Draft(logs, crane, LogMap({}, crane=crane_name, log=dict(logs[0].settings)))
     _refuse_different_names(draft)
     _refuse_rows_of_values(draft)

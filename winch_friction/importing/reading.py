@@ -42,6 +42,8 @@ def _read(path: Path, settings: Mapping[str, Any] | None) -> Log:
     path = Path(path)
     if not path.exists():
         raise InputError(f"{path}: no such file")
+    if not (path.is_file() or path.is_dir()):  # a pipe would be waited for
+        raise InputError(f"{path}: neither a file nor a folder")
     suffix = path.suffix.lower()
     if path.is_dir() and not any(each.suffix.lower() in (*BAG_SUFFIXES, ".yaml") for each in path.iterdir()):
         raise InputError(f"{path}: a folder, and no rosbag2 recording; give the logs themselves, as {path}/*.csv")

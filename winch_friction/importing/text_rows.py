@@ -9,7 +9,7 @@ from pathlib import Path
 
 from winch_friction.importing.cells import units_in_cells, without_unit
 from winch_friction.importing.units import looks_like_unit
-from winch_friction.physics.errors import InputError
+from winch_friction.physics.errors import InputError, no_cells
 
 SEEN = 300  # rows at either end that tell delimiter, decimal mark, layout and units
 
@@ -83,9 +83,11 @@ class TextRows:
             yield from ((k + 1, line.split()) for k, line in enumerate(self._lines) if line.strip())
             return
         reader = csv.reader((f"{line}\n" for line in self._lines), delimiter=self._delimiter)
+        begun = 0
         try:
             for row in reader:
+                begun = reader.line_num
                 if any(map(str.strip, row)) and not (reader.line_num == 1 and row[0].lower().startswith("sep=")):
                     yield reader.line_num, row
         except csv.Error as error:
-            raise InputError(f"{self.path}: line {reader.line_num}: {error}") from error
+            raise InputError(f"{self.path}: line {begun + 1}: {no_cells(error)}") from error

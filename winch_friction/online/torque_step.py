@@ -133,8 +133,6 @@ class TorqueStep:
         if names != self._names or (hole and not across):
             self._begin(names)
             self._off = self._off if all(name in names for name in self._off) else {}  # other motors
-        if across:
-            self._looks.append(sample.time)
         shown = tuple(getattr(each, name) for each in sample.groups.values() for name in CHANNELS)
         self._rows.append(Row(sample.time, torque, held, sample.motor_speed, shown or (sample.motor_torque,)))
         self._look(sample, dt)
@@ -184,7 +182,8 @@ class TorqueStep:
         about = [row for row in seen if abs(row.time - seen[at].time) <= max(REVERSAL, time[-1])]
         turns_on = all(row.speed * seen[at].speed > 0.0 for row in about)
         whole = all(after.time - before.time < LONGEST for before, after in itertools.pairwise(rows))
-        if not (whole or turns_on):  # in a hole with a reversal friction steps them as well
+        reverses = any(row.speed * seen[at].speed <= 0.0 for row in (*about, *rows))
+        if not whole and reverses:  # friction steps readings as well, and nobody has seen which it was
             return
         exchanged = {name for pair in self._exchanged(self._off) & self._exchanged(shown) for name in pair}
         back = {name for name, step in self._off.items() if name in exchanged or _is_back(step, shown[name])}

@@ -72,6 +72,13 @@ def counted(count: int, one: str, more: str) -> str:
     return f"{count} {one if count == 1 else more}"
 
 
+def no_cells(error: Exception) -> str:
+    """What is said of rows that `csv` cannot cut: of a cell without an end that a quotation mark is not closed."""
+    if "field larger" not in str(error):
+        return str(error)
+    return "a cell that begins here has no end: is a quotation mark not closed? Close or remove it"
+
+
 def unknown_key(key: str, known: Iterable[str]) -> str:
     """What is said of a key that a file cannot have: what may be meant, or else which keys there are."""
     known = list(known)

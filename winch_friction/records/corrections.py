@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from winch_friction.physics.channels import dimension_of, factor_to_si, product
-from winch_friction.physics.errors import InputError
+from winch_friction.physics.errors import InputError, Problems
 from winch_friction.physics.friction import registered_terms
 from winch_friction.physics.friction.correction import Correction, check_corrections
 from winch_friction.physics.friction.declared_correction import declared_correction
@@ -23,18 +23,21 @@ from winch_friction.records.unit_names import conversion_to_si
 def read_corrections(top: Section) -> tuple[Correction, ...]:
     """The corrections of a model file in SI; raises `InputError`, naming file and entry, for what is not one."""
     section = top.section("corrections")
-    found = []
+    found, problems = list[Correction](), Problems()
     for name in section.content:
         entry = section.get(name)
         entries = entry if isinstance(entry, list) else [entry]
         many = isinstance(entry, list)
         for k, each in enumerate(entries):
             where = f"{section.where}: {name}" + (f"[{k + 1}]" if many else "")
-            found.append(_correction(str(name), Section(each, where)))
+            with problems:
+                found.append(_correction(str(name), Section(each, where)))
     try:
         check_corrections(tuple(found))
     except InputError as error:
-        raise InputError(f"{top.where}: {error}") from None
+        with problems:
+            raise InputError(f"{top.where}: {error}") from None
+    problems.say()
     return tuple(found)
 
 

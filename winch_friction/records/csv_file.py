@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from winch_friction.physics.errors import InputError, Problems
+from winch_friction.physics.errors import InputError, Problems, no_cells
 from winch_friction.physics.signals import FloatArray, Run, column_unit
 from winch_friction.physics.winch.crane import Crane
 from winch_friction.records.atomic import atomic_path
@@ -202,7 +202,7 @@ class _Table:
         separator = separator_of(content.partition(b"\n")[0].decode())
         reader = csv.reader(io.TextIOWrapper(io.BytesIO(content), encoding="utf-8", newline=""), delimiter=separator)
         del content  # the stream's own now
-        self._path, self.lines, self._ragged = path, array("q"), list[tuple[int, int]]()
+        self._path, self.lines, self._ragged, self.header = path, array("q"), list[tuple[int, int]](), list[str]()
         try:
             self.header = next(reader)
             named = (cell.partition("[")[0].strip() for cell in self.header)
@@ -210,7 +210,8 @@ class _Table:
             while rows := self._block(reader):
                 self._add(rows)
         except csv.Error as error:
-            raise InputError(f"{path}: line {reader.line_num}: {error}") from error
+            begun = self.lines[-1] + 1 if self.lines else 1 + bool(self.header)
+            raise InputError(f"{path}: line {begun}: {no_cells(error)}") from error
 
     def _block(self, reader: Any) -> list[list[str]]:
         rows = []

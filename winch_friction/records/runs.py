@@ -34,8 +34,8 @@ def read_run(path: Path | str, crane: Crane | None = None, *, complete: bool = T
     Raises `InputError` in one line for whatever cannot be used.
     """
     path = Path(path)
-    if not path.exists():
-        raise InputError(f"{path}: no such file or folder")
+    if not (path.is_file() or path.is_dir()):  # a pipe would be waited for
+        raise InputError(f"{path}: {'neither a file nor a folder' if path.exists() else 'no such file or folder'}")
     suffix = path.suffix.lower()  # a logger under Windows writes LOG.CSV
     if is_bag(path):
         from winch_friction.records.bags import read_bag

@@ -159,6 +159,11 @@ def _said(error: Any) -> list[str]:
     beyond = [each for each in error.context or () if each.validator in _BOUNDS]
     if beyond:  # a number, but not one that can be
         words = f"must be {_BOUNDS[beyond[0].validator]} {beyond[0].validator_value:g}, found {error.instance!r}"
+    elif isinstance(error.instance, Mapping) and (inner := [e for e in error.context or () if e.validator != "type"
+                                                            or e.relative_path]):  # fmt: skip
+        return [said for each in inner for said in _said(each)]  # of the kind that it is nearly one of
+    elif error.validator == "uniqueItems":
+        words = "must name each once"
     elif error.validator in ("anyOf", "pattern", "type"):
         kind = _KINDS.get(str(error.schema.get("type")), "what belongs here")
         words = f"must be {error.schema.get('description', kind)}, found {error.instance!r}"

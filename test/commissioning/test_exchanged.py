@@ -40,6 +40,8 @@ def test_a_column_that_goes_as_the_command_or_the_angle_is_the_speed(told):
         {"motor_speed": LOAD, "hook_load": SPEED},  # nothing tells it
         {"motor_speed": LOAD, "hook_load": LOAD, "speed_reference": SPEED},
         {"motor_speed": LOAD, "hook_load": np.full_like(TIME, 55e3), "speed_reference": SPEED},
+        {"motor_speed": SPEED / RPM, "motor_torque": 20.0 * SPEED, "speed_reference": SPEED / RPM},  # rpm beside a drag
+        {"motor_speed": LOAD, "hook_load": 100.0 * np.cos(7.0 * TIME), "speed_reference": SPEED},
         {"hook_load": SPEED, "speed_reference": SPEED},
     ],
 )

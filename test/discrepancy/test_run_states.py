@@ -382,6 +382,24 @@ def test_a_drag_of_each_run_has_its_windows_by_date_and_its_amounts_as_shares_of
     assert made == [(cause, windows, EACH_RUN, (1.0, 0.0, 0.3333)) for cause in ("brake_drag", "wear_drift")]
 
 
+@pytest.mark.parametrize("pause", [1e-3, 0.4, 1.0, 2.0, 5.0])
+def test_runs_of_one_recording_that_follow_closely_have_a_drag_each(pause):
+    """Windows of neighbours met in the middle of the pause: a search ended with "the knots must be rising"."""
+    starts = [1.7e9 + k * (10.0 + pause) for k in range(6)]
+    runs = dated(*((start, 10.0) for start in starts))
+    found = in_each_run(runs, np.arange(1.0, 7.0))
+    assert [each.name for each in found] == ["brake_drag", "wear_drift"]
+
+
+@pytest.mark.parametrize("starts", [(0.0, 0.0, 0.0, 0.0), (0.0, 5.0, 100.0, 200.0), (0.0, 10.0, 100.0, 200.0)])
+def test_runs_whose_clocks_all_begin_anew_have_no_dates_and_so_no_states(monkeypatch, starts):
+    monkeypatch.setattr("winch_friction.discrepancy.run_states.told_by_a_signal", lambda *_: False)
+    runs = dated(*((start, 10.0) for start in starts))
+    there = np.array([False, True, False, True])
+    assert in_each_run(runs, np.arange(1.0, 5.0)) == []
+    assert in_some_runs(a_slot("zero"), runs, 8.0 * there, there) == []
+
+
 def test_a_drag_for_a_time_is_named_for_its_cause_and_its_law():
     own = _drag("brake_drag", ((1.0, 2.0), (3.0, 4.0)), SOME_RUNS)
     assert (own.name, own.law_name, own.term.name) == ("brake_drag", SOME_RUNS, "brake_drag_in_some_runs")

@@ -200,7 +200,7 @@ def test_a_mapping_has_the_keys_of_its_default_and_those_that_are_known_now() ->
 
 def test_a_bad_setting_is_told_by_the_nodes_name() -> None:
     board, options = declared()
-    with pytest.raises(InputError, match=r"^board: parameters: share must be 0 \.\.\. 1 1, found 2$"):
+    with pytest.raises(InputError, match=r"^board: parameters: share must be 0 \.\.\. 1, found 2$"):
         options.read(board, {"share": 2.0})
 
 

@@ -210,7 +210,6 @@ def _beside_balance(view: RunView) -> float:
 
 
 # -- the motor's speed in another column: exchanged columns are two mistakes to whoever looks at units alone
-FASTEST = 600.0  # rad/s: 5700 rpm, no motor of a winch turns faster
 EXCHANGED = 0.95  # correlation of a speed with its command, or with the rate of its own angle
 MAY_BE = ("hook_load", "heave_velocity", "oil_temperature", "wire_out", "motor_torque", "rope_force")
 

@@ -55,14 +55,20 @@ class State:
 
 
 def in_some_runs(slot: Slot, runs: Sequence[PreparedRun], levels: FloatArray, there: np.ndarray) -> list[Candidate]:
-    """Candidates for what is `there` in some runs, at these levels; none where a logged signal says as much."""
-    return [] if told_by_a_signal(runs, there) else _candidates(slot, _state(runs, levels, there))
+    """Candidates for what is `there` in some runs, at these levels; none where a logged signal says as much, or the
+    runs' clocks tell no order."""
+    if told_by_a_signal(runs, there) or not _in_turn(runs):
+        return []
+    return _candidates(slot, _state(runs, levels, there))
 
 
 def in_each_run(runs: Sequence[PreparedRun], levels: FloatArray) -> list[Candidate]:
-    """Candidates for a drag by these amounts, one of each run: a brake, or what wears by whatever law of the date."""
+    """Candidates for a drag by these amounts, one of each run: a brake, or what wears by whatever law of the date; none
+    where the runs' clocks tell no order."""
     order, begins, ends = _by_date(runs)
-    windows = tuple(_window(begins, ends, [k]) for k in range(len(order)))
+    if not _in_turn(runs):
+        return []
+    windows = tuple(_window(begins, ends, [k], 1.0 / 3.0) for k in range(len(order)))  # those of neighbours never meet
     weights = tuple(float(f"{max(levels[k], 0.0) / levels.max():.4g}") for k in order)  # a brake drives nothing
     return [_drag(cause, windows, EACH_RUN, weights) for cause in (BRAKE, WEAR)]
 
@@ -127,12 +133,21 @@ def _by_date(runs: Sequence[PreparedRun]) -> tuple[list[int], list[float], list[
     return order, [runs[k].start for k in order], [runs[k].start + float(runs[k].time[-1]) for k in order]
 
 
+def _in_turn(runs: Sequence[PreparedRun]) -> bool:
+    """Whether each run begins after the one before has ended: the clocks of others begin anew with each."""
+    _, begins, ends = _by_date(runs)
+    return all(begin > end for begin, end in zip(begins[1:], ends[:-1], strict=True))
+
+
 def _spells(inside: Sequence[bool]) -> list[tuple[bool, list[int]]]:
     return [(on, list(group)) for on, group in itertools.groupby(range(len(inside)), key=lambda k: inside[k])]
 
 
-def _window(begins: Sequence[float], ends: Sequence[float], group: Sequence[int]) -> tuple[float, float]:
+def _window(
+    begins: Sequence[float], ends: Sequence[float], group: Sequence[int], share: float = 0.5
+) -> tuple[float, float]:
+    """From before these runs until after them, by no more than this share of what lies between them and the next."""
     first, last = group[0], group[-1]
-    before = 0.5 * (begins[first] - ends[first - 1]) if first > 0 else MARGIN
-    after = 0.5 * (begins[last + 1] - ends[last]) if last + 1 < len(begins) else MARGIN
+    before = share * (begins[first] - ends[first - 1]) if first > 0 else MARGIN
+    after = share * (begins[last + 1] - ends[last]) if last + 1 < len(begins) else MARGIN
     return begins[first] - min(before, MARGIN), ends[last] + min(after, MARGIN)

@@ -342,3 +342,18 @@ def test_what_cannot_be_shown_is_told_as_it_was_given(here, capsys, words, line)
     (here / "empty.yaml").write_text("")
     assert run(["show", *words.split()]) == 2
     assert said(capsys) == [line]
+
+
+@pytest.mark.parametrize(
+    ("words", "place"),
+    [("check run.csv --out there.csv", "--out there.csv/check.html"),
+     ("gap run.csv --out there.csv", "--out there.csv/model.yaml")],
+)  # fmt: skip
+def test_a_run_is_held_against_the_models_crane_though_nothing_can_be_written(here, capsys, words, place):
+    """Without a crane a run was read for its time alone, and what it lacks came up at the next call."""
+    rows = [",".join([f"{0.02 * k:.2f}", "2", "120", "20"]) for k in range(200)]
+    head = "time [s],drum_speed [rpm],main.pressure_a [bar],hook_load [t]"
+    (here / "run.csv").write_text("\n".join([head, *rows]) + "\n")
+    assert run([*words.split(), "--model", "a6vm215_crane2"]) == 2
+    lines = [line for line in capsys.readouterr().err.splitlines() if line.startswith("winch-friction: ")]
+    assert [line.removeprefix("winch-friction: ").partition(":")[0] for line in lines] == [place, "run.csv"]

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from own_term_files import TERM, forgotten, own_model, own_terms
 
 from winch_friction.cli import main
 from winch_friction.cli.fleet_work import plan
@@ -108,3 +109,14 @@ def test_a_cranes_name_of_digits_stays_a_name(tmp_path):
     row = {"recording": "a", "time": 1.7e9, "kind": "trait", "name": "friction", "value": 1.0, "std": 0.1, "unit": "%"}
     write_store(tmp_path, [{**row, "crane": "007"}, {**row, "crane": "012"}])
     assert sorted(read_store(tmp_path)["crane"]) == ["007", "012"]
+
+
+def test_a_model_with_own_terms_is_read_where_their_file_is_given(tmp_path, run, capsys):
+    """Whether the model can be read is for the worker to say, who is given the terms."""
+    write_run(run, tmp_path / "north" / "a.parquet")
+    own = [*FILES, "--model", str(own_model(tmp_path)), "--option", f"terms-file={own_terms(tmp_path)}"]
+    with forgotten(TERM):
+        status = main.run(["fleet", "check", str(tmp_path / "north"), "--out", str(tmp_path / "out"), *own])
+    said = capsys.readouterr()
+    assert status == 0, said.err
+    assert json.loads(said.out)["outcomes"][0]["status"] == 0

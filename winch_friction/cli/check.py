@@ -58,7 +58,7 @@ def command(
         refuse_unwritable(out and out / "check.html")
         refuse_foreign(out, ("check.html", "check.json"), "check.json", "winch_friction.check/")
     options = bag_options_of(params_file, namespace)
-    read, winch, seed = read_inputs(paths, crane, model, options, problems=problems)
+    read, winch, seed = read_inputs(paths, crane, model, options, before=problems.found)
     refuse_same_names(read, paths)
     near = [*paths, *([Path(crane)] if crane else [])]
     result = check(read, winch, seed, partial(cranes_near, near))

@@ -62,8 +62,7 @@ def command(
     from winch_friction.cli.inputs import refuse_foreign, refuse_unwritable
     from winch_friction.cli.provenance import provenance_of
     from winch_friction.fleet.recordings import find_recordings
-    from winch_friction.records.crane_file import load_crane
-    from winch_friction.records.model_file import load_model
+    from winch_friction.records.strict_yaml import shipped
 
     problems = Problems()
     with problems:
@@ -72,10 +71,10 @@ def command(
     options = _storage_options(storage or [])
     with problems:
         recordings, tables = _without_tables(find_recordings(sources, options, own_folders(out)))
-    for name, load in ((crane, load_crane), (model, load_model)):
+    for kind, name in (("cranes", crane), ("models", model)):
         with problems:
-            if name and "{" not in name:  # else each recording's own
-                load(name)
+            if name and "{" not in name:  # else each recording's own; what it says the workers read, who have its terms
+                shipped(kind, name)
     problems.say()
     tasks = plan(verb, recordings, out, crane, model, _flags(option or []), options)
     outcomes = _done(tasks, Ledger(out / "fleet.jsonl"), workers, scheduler, anew)

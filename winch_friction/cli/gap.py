@@ -199,7 +199,7 @@ def run_gap(
     model = model or _usual_model(crane, paths)
     crane = load_model(MODEL).crane if assumed else crane
     conventions = bag_options_of(params_file, namespace) if params_file or namespace else {}
-    read, loaded_crane, seed_model = read_inputs(paths, crane, model, conventions, unstated, problems)
+    read, loaded_crane, seed_model = read_inputs(paths, crane, model, conventions, unstated, problems.found)
     warned = [*(each for run in read for each in run.warnings), *same_recordings(read)]
     show_warnings(warned)
     refuse_same_names(read, paths)

@@ -105,19 +105,19 @@ def read_inputs(
     model: str,
     options: Mapping[str, Any] | None = None,
     remarks: Callable[[Any], Iterable[str]] = lambda model: (),
-    problems: Problems | None = None,
+    before: Sequence[str] = (),
 ) -> tuple[list[Any], Any, Any]:
     """The runs, their crane and the model (None without a name); whatever is wrong with any of them is said at once,
-    with the `problems` there are. `options` are for bags; `remarks` are what is to be told of the model on stderr.
+    after the problems `before`. `options` are for bags; `remarks` are what is to be told of the model on stderr.
     """
-    problems = problems or Problems()
+    problems = Problems()
     winch, seed = machine_of(crane, model, paths, problems)
     runs: list[Any] = []
     if seed is not None:
         show_warnings(remarks(seed))
     with problems:
         runs = read_all(paths, winch, complete=winch is not None, **(options or {}))
-    problems.say()
+    problems.say(*before)
     return runs, winch, seed
 
 

@@ -49,7 +49,7 @@ def command(
     paths = run_paths(runs)
     options = bag_options_of(params_file, namespace)
     if crane:
-        read, machine, drawn = read_inputs(paths, crane, model, options, problems=problems)
+        read, machine, drawn = read_inputs(paths, crane, model, options, before=problems.found)
     else:
         machine = drawn = None
         with problems:

@@ -91,11 +91,12 @@ def command(
     settings = None
     with problems:
         settings = settings_from_file(params_file, namespace) if params_file else None
-    winch, seed = machine_of(crane, model, [recording], problems)
-    with problems:
-        if problems.found:
+    inputs = Problems()
+    winch, seed = machine_of(crane, model, [recording], inputs)
+    with inputs:
+        if problems.found or inputs.found:
             _read(recording, winch, options, complete=False)
-    problems.say()
+    inputs.say(*problems.found)
     show_warnings(unstated(seed, settings.estimator.default_std if settings else ASSUMED_STD))
     run = _run_of(recording, winch, options)
     forced = refuse_implausible([run], winch, seed, force, [recording]) if run is not None else {}

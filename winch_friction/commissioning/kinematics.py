@@ -223,7 +223,7 @@ def exchanged_columns(runs: Sequence[Run]) -> Iterator[tuple[str, str, str]]:
             continue
         for name in (each for each in MAY_BE if each in run.columns):
             other = run[name]
-            if np.nanmax(np.abs(other)) <= FASTEST and any(_follows(other, each) for each in _speeds(run)):
+            if np.nanmax(np.abs(other)) <= FASTEST and any(_goes_as(each, other) for each in _speeds(run)):
                 said = (
                     f"{run.name}: motor_speed is {np.nanmedian(np.abs(speed)):.4g} rad/s, and {name} goes as the motor "
                     f"does: are these two columns exchanged?"
@@ -238,8 +238,5 @@ def _speeds(run: Run) -> Iterator[FloatArray]:
         yield np.gradient(run["shaft_angle"], run.time)
 
 
-def _follows(one: FloatArray, two: FloatArray) -> bool:
-    good = np.isfinite(one) & np.isfinite(two)
-    if good.sum() < FEWEST or min(np.ptp(one[good]), np.ptp(two[good])) <= 0.0:
-        return False
-    return bool(np.corrcoef(one[good], two[good])[0, 1] >= EXCHANGED)
+def _goes_as(speed: FloatArray, told: FloatArray) -> bool:
+    return _compared(_apart(speed), _apart(told))[1] >= EXCHANGED

@@ -65,9 +65,9 @@ def in_some_runs(slot: Slot, runs: Sequence[PreparedRun], levels: FloatArray, th
 def in_each_run(runs: Sequence[PreparedRun], levels: FloatArray) -> list[Candidate]:
     """Candidates for a drag by these amounts, one of each run: a brake, or what wears by whatever law of the date; none
     where the runs' clocks tell no order."""
-    order, begins, ends = _by_date(runs)
     if not _in_turn(runs):
         return []
+    order, begins, ends = _by_date(runs)
     windows = tuple(_window(begins, ends, [k], 1.0 / 3.0) for k in range(len(order)))  # those of neighbours never meet
     weights = tuple(float(f"{max(levels[k], 0.0) / levels.max():.4g}") for k in order)  # a brake drives nothing
     return [_drag(cause, windows, EACH_RUN, weights) for cause in (BRAKE, WEAR)]

@@ -128,9 +128,8 @@ class TorqueStep:
             self._begin(names)
             return self._words()
         passed = sample.time - self._rows[-1].time if self._rows else 0.0
-        hole = bool(self._rows) and not 0.0 < passed < LONGEST
-        across = hole and names == self._names and bool(self._off) and 0.0 < passed <= HOLE
-        if names != self._names or (hole and not across):
+        longest = HOLE if self._off else LONGEST  # what stepped may step back meanwhile
+        if names != self._names or (self._rows and not 0.0 < passed < longest):
             self._begin(names)
             self._off = self._off if all(name in names for name in self._off) else {}  # other motors
         shown = tuple(getattr(each, name) for each in sample.groups.values() for name in CHANNELS)

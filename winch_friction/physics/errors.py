@@ -51,10 +51,10 @@ class Problems:
         self.found += [each for each in error.problems if each not in self.found]
         return True
 
-    def say(self) -> None:
-        """Raise `InputError` with whatever was gathered; nothing, where nothing was."""
-        if self.found:
-            raise InputError(*self.found)
+    def say(self, *before: str) -> None:
+        """Raise `InputError` with what was gathered `before` and here; nothing, where nothing was."""
+        if before or self.found:
+            raise InputError(*before, *self.found)
 
 
 def meant(name: str, known: Iterable[str]) -> str:

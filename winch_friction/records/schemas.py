@@ -157,11 +157,11 @@ def _said(error: Any) -> list[str]:
         return [f"{front}key '{key}' is missing" for key in missing]
     words = error.message
     beyond = [each for each in error.context or () if each.validator in _BOUNDS]
+    inner = [each for each in error.context or () if each.validator != "type" or each.relative_path]  # nearly of a kind
     if beyond:  # a number, but not one that can be
         words = f"must be {_BOUNDS[beyond[0].validator]} {beyond[0].validator_value:g}, found {error.instance!r}"
-    elif isinstance(error.instance, Mapping) and (inner := [e for e in error.context or () if e.validator != "type"
-                                                            or e.relative_path]):  # fmt: skip
-        return [said for each in inner for said in _said(each)]  # of the kind that it is nearly one of
+    elif inner and isinstance(error.instance, Mapping):
+        return [said for each in inner for said in _said(each)]
     elif error.validator == "uniqueItems":
         words = "must name each once"
     elif error.validator in ("anyOf", "pattern", "type"):

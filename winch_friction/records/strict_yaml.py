@@ -6,7 +6,6 @@ import contextlib
 import copy
 import itertools
 import math
-import os
 import re
 import sys
 from collections.abc import Mapping
@@ -135,7 +134,7 @@ LARGEST_FILE = 1_000_000  # bytes, which take two seconds; 30 MB took 40, and wh
 
 def read_yaml(path: Path) -> Any:
     """The content of a YAML file; syntax errors and missing files as one line."""
-    if (size := os.stat(path).st_size if Path(path).is_file() else 0) > LARGEST_FILE:
+    if path.is_file() and (size := path.stat().st_size) > LARGEST_FILE:
         raise InputError(
             f"{path}: {size / 1e6:.3g} MB are no model, crane or scenario (the largest has {LARGEST_FILE / 1e6:g} MB); "
             "is it the right file?"

@@ -12,7 +12,9 @@ from campaign.gap_cases import Case
 from campaign.rig import DRAWN
 from winch_friction.discrepancy.answer import GapOptions
 from winch_friction.discrepancy.candidates.candidate import Candidate, Shape
-from winch_friction.discrepancy.catalogue import levels_of, two_levels
+from winch_friction.discrepancy.candidates.families import literature
+from winch_friction.discrepancy.candidates.friction import shipped_friction
+from winch_friction.discrepancy.catalogue import levels_of, testable, two_levels
 from winch_friction.discrepancy.engine.blocks import Blocks, Slot, grams
 from winch_friction.discrepancy.engine.problem import Base, Layout, Problem
 from winch_friction.discrepancy.logged_causes import _left_by, _medians, _spread, follows_a_signal, told_by_a_signal
@@ -398,6 +400,34 @@ def test_runs_whose_clocks_all_begin_anew_have_no_dates_and_so_no_states(monkeyp
     there = np.array([False, True, False, True])
     assert in_each_run(runs, np.arange(1.0, 5.0)) == []
     assert in_some_runs(a_slot("zero"), runs, 8.0 * there, there) == []
+
+
+@pytest.mark.parametrize(
+    ("starts", "there"),
+    [
+        ((0.0, 20.0, 40.0), True),
+        ((1.7e9, 1.7e9 - 50.0, 1.7e9 + 10.0), True),  # in any order; two that share the row at their seam
+        ((0.0, 9.0, 18.0), True),
+        ((0.0, 5.0, 10.0), False),
+        ((0.0, 0.0, 40.0), False),
+        ((3.0, 1.0, 0.0), False),
+    ],
+)
+def test_what_follows_the_date_is_asked_of_runs_whose_clocks_go_on(crane2_model, starts, there):
+    """A wear over clocks that all begin anew is what changes while a run goes on, under another name."""
+    runs = dated(*((start, 10.0) for start in starts))
+    for run in runs:
+        run.present, run.groups = frozenset(), ()
+    asked = [
+        each
+        for each in (*shipped_friction(), *literature())
+        if each.name in ("wear_drift", "brake_drag", "coulomb") and each.blind is None
+    ]
+    usable, blind = testable(asked, runs, crane2_model)
+    of_dates = {each.name for each in usable if "time" in each.term.reads}
+    assert of_dates == ({"wear_drift", "brake_drag"} if there else set())
+    assert {each.name for each in usable} >= {"brake_drag", "coulomb"}  # a steady drag needs no date
+    assert [(each.name, each.needs) for each in blind] == ([] if there else [("wear_drift", "time")])
 
 
 def test_a_drag_for_a_time_is_named_for_its_cause_and_its_law():

@@ -37,9 +37,10 @@ from winch_friction.discrepancy.engine import FloatArray
 from winch_friction.discrepancy.engine.blocks import Slot, first_halves
 from winch_friction.discrepancy.engine.problem import Problem
 from winch_friction.discrepancy.logged_causes import follows_a_signal
+from winch_friction.discrepancy.preparation.grid import dated
 from winch_friction.discrepancy.preparation.prepare import PreparedRun
 from winch_friction.discrepancy.regressors import base_of, build_problem, layout_of
-from winch_friction.discrepancy.run_states import BRAKE, in_each_run, in_some_runs
+from winch_friction.discrepancy.run_states import BRAKE, WEAR, in_each_run, in_some_runs
 from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.friction import FrictionModel, term_named
@@ -151,16 +152,22 @@ def _given(shapes: list[Shape], _: Sequence[PreparedRun]) -> list[Shape]:
     return shapes
 
 
+ANEW = "the runs' clocks begin anew with each; for a wear, and what only some runs have, give times that go on"
+
+
 def testable(
     candidates: Sequence[Candidate], runs: Sequence[PreparedRun], model: FrictionModel
 ) -> tuple[list[Candidate], list[Untestable]]:
-    """Split by the channels at hand and by what the model already has."""
+    """Split by the channels at hand, by the dates told and by what the model already has."""
     usable: list[Candidate] = []
     blind: list[Untestable] = []
+    anew = not dated((run.start, run.start + float(run.time[-1])) for run in runs)
     for each in candidates:
         if each.presumes and not set(each.presumes) & set(model.term_names):
             continue
         reason = each.untestable(runs)
+        if reason is None and anew and each.name in (BRAKE, WEAR) and "time" in each.signals:
+            reason = Untestable(each.name, each.latex, "time", ANEW)
         if reason is None:
             usable.append(each)
         else:

@@ -4,7 +4,8 @@ Recursive filters over a whole record are banded triangular systems: `scipy.sign
 but importing it brings scipy.stats and scipy.optimize, half a second of every `gap`.
 """
 
-from collections.abc import Sequence
+import itertools
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
 
@@ -102,6 +103,14 @@ def digit_of(values: FloatArray) -> float:
     if len(levels) < FEWEST_LEVELS or 2 * len(levels) > len(known):
         return 0.0
     return float(np.diff(levels).min())
+
+
+def dated(spans: Iterable[tuple[float, float]]) -> bool:
+    """Whether the clocks of runs that begin and end so, in s, go on from one to the next, but for what two may share at
+    the seam; those of others begin anew with each, and tell neither how far a wear has come nor which run was when.
+    """
+    pairs = itertools.pairwise(sorted(spans))
+    return all(later > 0.5 * (began + ended) for (began, ended), (later, _) in pairs)
 
 
 def smooth(values: FloatArray, window: int, order: int = 2) -> FloatArray:

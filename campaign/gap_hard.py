@@ -3,7 +3,8 @@
     python -m campaign.gap_hard [--quick] [--cases N] [--processes 2] [--minutes M] [--report-only]
 
 Every finished case is one line of out/campaign_gap_hard/results.jsonl; a second call carries on where the first ended,
-and a partial run gives a table that says so. The table goes to docs/campaign_gap_hard.md. Seeds start at 300000.
+and a partial run gives a table that says so. The table goes to docs/campaign_gap_hard.md. Seeds start at 300000, or
+where `--first-seed` says: give such a draw results of its own.
 """
 
 import argparse
@@ -17,7 +18,7 @@ for threads in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "N
 
 from campaign.commit import commit  # noqa: E402
 from campaign.gap import finished  # noqa: E402
-from campaign.gap_hard_cases import HardCase, all_cases, runs_of  # noqa: E402
+from campaign.gap_hard_cases import FIRST_SEED, HardCase, all_cases, runs_of  # noqa: E402
 from campaign.gap_hard_report import write_table  # noqa: E402
 
 RESULTS = Path("out/campaign_gap_hard/results.jsonl")
@@ -73,12 +74,14 @@ def main() -> None:
     parser.add_argument("--cases", type=int, help="stop after so many cases, of all kinds in turn")
     parser.add_argument("--processes", type=int, default=2)
     parser.add_argument("--minutes", type=float, default=float("inf"), help="stop after that long; the table says so")
+    parser.add_argument("--first-seed", type=int, default=FIRST_SEED)
     parser.add_argument("--only", help="cases whose key contains this")
     parser.add_argument("--results", type=Path, default=RESULTS)
     parser.add_argument("--table", type=Path, default=TABLE)
     parser.add_argument("--report-only", action="store_true")
     chosen = parser.parse_args()
-    cases = [case for case in all_cases(quick=chosen.quick) if not chosen.only or chosen.only in case.key]
+    cases = all_cases(chosen.quick, chosen.first_seed)
+    cases = [case for case in cases if not chosen.only or chosen.only in case.key]
     cases = cases[: chosen.cases]
     chosen.results.parent.mkdir(parents=True, exist_ok=True)
     if not chosen.report_only:

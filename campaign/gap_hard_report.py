@@ -12,9 +12,10 @@ NAMED = ("missing_effect", "ambiguous")
 def write_table(path: Path, rows: Sequence[Row], planned: int) -> None:
     """Markdown with the bars and every case that misses one."""
     commits = Counter(row.get("commit", "unknown") for row in rows)
+    first = min((row["seed"] for row in rows), default="nowhere")
     parts = [
         "# The hard gap campaign: poor logs, other rates, far seeds, and the written file on fresh runs",
-        "Data from `campaign/rig`, cut, thinned and resampled; seeds from 300000.",
+        f"Data from `campaign/rig`, cut, thinned and resampled; seeds from {first}.",
         "* Command: `make campaign-gap-hard` (`python -m campaign.gap_hard`; resumable)\n"
         f"* Commit: {', '.join(f'{name} ({n} data sets)' for name, n in commits.items())}\n"
         f"* Data sets: {len(rows)} of {planned} planned"

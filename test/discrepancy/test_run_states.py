@@ -10,11 +10,12 @@ from gap_rig import names_of, runs_with
 from campaign.gap import diagnose
 from campaign.gap_cases import Case
 from campaign.rig import DRAWN
+from winch_friction.discrepancy import catalogue
 from winch_friction.discrepancy.answer import GapOptions
 from winch_friction.discrepancy.candidates.candidate import Candidate, Shape
 from winch_friction.discrepancy.candidates.families import literature
 from winch_friction.discrepancy.candidates.friction import shipped_friction
-from winch_friction.discrepancy.catalogue import levels_of, testable, two_levels
+from winch_friction.discrepancy.catalogue import levels_of, two_levels
 from winch_friction.discrepancy.engine.blocks import Blocks, Slot, grams
 from winch_friction.discrepancy.engine.problem import Base, Layout, Problem
 from winch_friction.discrepancy.logged_causes import _left_by, _medians, _spread, follows_a_signal, told_by_a_signal
@@ -423,7 +424,7 @@ def test_what_follows_the_date_is_asked_of_runs_whose_clocks_go_on(crane2_model,
         for each in (*shipped_friction(), *literature())
         if each.name in ("wear_drift", "brake_drag", "coulomb") and each.blind is None
     ]
-    usable, blind = testable(asked, runs, crane2_model)
+    usable, blind = catalogue.testable(asked, runs, crane2_model)
     of_dates = {each.name for each in usable if "time" in each.term.reads}
     assert of_dates == ({"wear_drift", "brake_drag"} if there else set())
     assert {each.name for each in usable} >= {"brake_drag", "coulomb"}  # a steady drag needs no date

@@ -412,6 +412,8 @@ def test_runs_whose_clocks_all_begin_anew_have_no_dates_and_so_no_states(monkeyp
         ((0.0, 5.0, 10.0), False),
         ((0.0, 0.0, 40.0), False),
         ((3.0, 1.0, 0.0), False),
+        ((0.0, 20.0, 23.0, 40.0), True),  # two cuts of one recording among others
+        ((0.0,), True),
     ],
 )
 def test_what_follows_the_date_is_asked_of_runs_whose_clocks_go_on(crane2_model, starts, there):

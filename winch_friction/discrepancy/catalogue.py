@@ -37,7 +37,7 @@ from winch_friction.discrepancy.engine import FloatArray
 from winch_friction.discrepancy.engine.blocks import Slot, first_halves
 from winch_friction.discrepancy.engine.problem import Problem
 from winch_friction.discrepancy.logged_causes import follows_a_signal
-from winch_friction.discrepancy.preparation.grid import dated
+from winch_friction.discrepancy.preparation.grid import overlaps
 from winch_friction.discrepancy.preparation.prepare import PreparedRun
 from winch_friction.discrepancy.regressors import base_of, build_problem, layout_of
 from winch_friction.discrepancy.run_states import BRAKE, WEAR, in_each_run, in_some_runs
@@ -161,7 +161,8 @@ def testable(
     """Split by the channels at hand, by the dates told and by what the model already has."""
     usable: list[Candidate] = []
     blind: list[Untestable] = []
-    anew = not dated((run.start, run.start + float(run.time[-1])) for run in runs)
+    # two cuts of one recording may overlap, and most share a row at their seam
+    anew = 0 < len(runs) - 1 <= 2 * overlaps(((run.start, run.start + float(run.time[-1])) for run in runs), 0.5)
     for each in candidates:
         if each.presumes and not set(each.presumes) & set(model.term_names):
             continue

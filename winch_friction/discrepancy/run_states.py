@@ -15,6 +15,7 @@ from winch_friction.discrepancy.candidates.friction import COULOMB, term_columns
 from winch_friction.discrepancy.engine import FloatArray
 from winch_friction.discrepancy.engine.blocks import Slot
 from winch_friction.discrepancy.logged_causes import told_by_a_signal
+from winch_friction.discrepancy.preparation.grid import overlaps
 from winch_friction.discrepancy.preparation.prepare import PreparedRun
 from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.physics.friction import Scope
@@ -136,7 +137,7 @@ def _by_date(runs: Sequence[PreparedRun]) -> tuple[list[int], list[float], list[
 def _in_turn(runs: Sequence[PreparedRun]) -> bool:
     """Whether each run begins after the one before has ended: the clocks of others begin anew with each."""
     _, begins, ends = _by_date(runs)
-    return all(begin > end for begin, end in zip(begins[1:], ends[:-1], strict=True))
+    return not overlaps(zip(begins, ends, strict=True))
 
 
 def _spells(inside: Sequence[bool]) -> list[tuple[bool, list[int]]]:

@@ -105,12 +105,10 @@ def digit_of(values: FloatArray) -> float:
     return float(np.diff(levels).min())
 
 
-def dated(spans: Iterable[tuple[float, float]]) -> bool:
-    """Whether the clocks of runs that begin and end so, in s, go on from one to the next, but for what two may share at
-    the seam; those of others begin anew with each, and tell neither how far a wear has come nor which run was when.
-    """
+def overlaps(spans: Iterable[tuple[float, float]], share: float = 1.0) -> int:
+    """How many of the runs that begin and end so, in s, begin before this share of the one before has passed."""
     pairs = itertools.pairwise(sorted(spans))
-    return all(later > 0.5 * (began + ended) for (began, ended), (later, _) in pairs)
+    return sum(later <= (1.0 - share) * began + share * ended for (began, ended), (later, _) in pairs)
 
 
 def smooth(values: FloatArray, window: int, order: int = 2) -> FloatArray:

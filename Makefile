@@ -11,7 +11,7 @@ export OPENBLAS_NUM_THREADS ?= 1
 # every process that a test starts would compile the package anew, and every worker all tests
 unexport PYTHONDONTWRITEBYTECODE
 
-CAMPAIGNS := loop identification gap gap-hard rates fleet faults soak real own-simulation second third
+CAMPAIGNS := loop identification gap gap-hard thresholds rates fleet faults soak real own-simulation second third
 
 .PHONY: docs demo test test-nodes test-computing test-long test-ubuntu24.04 lint bench setup browser colcon mutants clean campaign campaign-import $(addprefix campaign-,$(CAMPAIGNS))
 

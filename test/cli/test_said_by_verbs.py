@@ -274,6 +274,17 @@ def test_the_terminal_says_what_is_open(more, expected, absent, tabled, capsys, 
     assert absent not in said
 
 
+def test_the_terminal_says_what_could_not_be_looked_for_once_for_each_reason(tabled, capsys, tmp_path):
+    blind = [("entrained_air", "speed_reference", "lost flow"), ("wear_drift", "time", "clocks begin anew"),
+             ("slip_leakage", "speed_reference", "lost flow")]  # fmt: skip
+    untestable = [{"name": name, "needs": needs, "because": because} for name, needs, because in blind]
+    gap_output.show_result(gap_content(effects=[], untestable=untestable), tmp_path)
+    assert [line for line in capsys.readouterr().out.splitlines() if line.startswith("not looked for")] == [
+        "not looked for: entrained_air, slip_leakage (needs speed_reference: lost flow)",
+        "not looked for: wear_drift (needs time: clocks begin anew)",
+    ]
+
+
 @pytest.mark.parametrize(
     ("hidden", "verdict", "found", "right"),
     [

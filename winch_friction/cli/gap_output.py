@@ -117,6 +117,11 @@ def show_result(content: dict[str, Any], out: Path, said: Collection[str] = ()) 
     for note in content["notes"]:
         if note not in said:
             print(f"note: {note}")
+    blind: dict[str, list[str]] = {}
+    for each in content.get("untestable", ()):
+        blind.setdefault(f"needs {each['needs']}: {each['because']}", []).append(each["name"])
+    for reason, names in blind.items():
+        print(f"not looked for: {', '.join(names)} ({reason})")
     for proposal in content.get("proposals", ()):
         print(f"proposal: {proposal['sentence']} ({out / proposal['terms_file']}, {out / proposal['model_file']})")
     if plan := content["next_experiment"]:

@@ -8,6 +8,7 @@ import pytest
 import winch_friction as wf
 from winch_friction.cli.main import run
 from winch_friction.cli.watch import DISCOVERY, counted
+from winch_friction.physics.errors import InputError
 
 
 @pytest.fixture(scope="module")
@@ -32,6 +33,23 @@ def test_a_joint_that_is_not_there_is_said(bag, capsys):
     said = " ".join(capsys.readouterr().out.split())
     assert "no joint 'moon'" in said
     assert "motor speed" not in said
+
+
+@pytest.mark.parametrize(("heard", "said"), [(0, ""), (2, "no samples yet")])
+def test_an_error_begins_a_line_of_its_own(heard, said, monkeypatch, capsys):
+    """It stood on the line of the last frame, and a bad namespace only after "nothing heard yet"."""
+
+    def frames(*_):
+        yield from [{"time": None, "status": {"w/estimator: clock": status_of()}, "points": {}, "notes": []}] * heard
+        raise InputError("the namespace is none")
+
+    monkeypatch.setattr("winch_friction.cli.live.frames", frames)
+    assert run(["watch"]) == 2
+    told = capsys.readouterr()
+    assert told.err == "winch-friction: the namespace is none\n"
+    assert told.out == "" or told.out.endswith("\n")
+    assert said in told.out
+    assert (told.out == "") is (heard == 0)
 
 
 @pytest.mark.parametrize("name", ["nothing", "pyproject.toml"])
@@ -115,7 +133,7 @@ def test_the_verb_asks_for_what_it_was_given_and_shows_the_latest_point(monkeypa
     monkeypatch.setattr(watch, "view", lambda frame, latest: shown.append((frame["time"], dict(latest))) or "")
     watch.command(None, "w", "j", 3.0, 2, False)
     assert asked == [(None, "w", 3.0, "j")]
-    assert shown == [(None, {}), (0.0, {"speed": 5.0}), (1.0, {"speed": 6.0})]
+    assert shown == [(0.0, {"speed": 5.0}), (1.0, {"speed": 6.0})]
     watch.command(None, "w", "j", 3.0, 0, True)
     assert [json.loads(line)["time"] for line in capsys.readouterr().out.splitlines() if line.startswith("{")] == [
         float(k) for k in range(9)

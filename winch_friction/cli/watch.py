@@ -2,6 +2,7 @@
 
 import json
 from collections.abc import Iterable, Iterator
+from itertools import chain, islice
 from typing import Annotated, Any
 
 import typer
@@ -41,11 +42,16 @@ def command(
         for frame in chosen:
             print(json.dumps(finite(frame)), flush=True)
         return
-    latest: dict[str, float] = {}
-    with Live(view({"time": None, "status": {}}, latest), console=stdout, refresh_per_second=5) as live:
-        for frame in chosen:
-            latest.update({name: points[-1][1] for name, points in frame["points"].items()})
-            live.update(view(frame, latest))
+    heard, latest = iter(chosen), dict[str, float]()
+    first = list(islice(heard, 1))  # before anything is drawn: what is refused at once is said alone
+    try:
+        with Live(console=stdout, refresh_per_second=5) as live:
+            for frame in chain(first, heard):
+                latest.update({name: points[-1][1] for name, points in frame["points"].items()})
+                live.update(view(frame, latest))
+    finally:
+        if not stdout.is_terminal:  # there the last frame ends without one
+            print()
 
 
 def counted(found: Iterable[dict[str, Any]], frames: int) -> Iterator[dict[str, Any]]:

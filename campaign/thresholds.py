@@ -36,6 +36,7 @@ FROZEN = ("", 1.0)
 ADEQUACY = (
     "shortest_record", "lowest_rate", "least_usable", "least_moving", "least_each_way", "least_locked",
     "least_speed_spread", "swing_told", "least_share_moving", "fewest_to_lock_whole", "fewest_runs",
+    "fewest_levels",
 )  # fmt: skip
 # ... and how finely things are worked out, which is no bar that something passes or not.
 SETTINGS = (
@@ -142,15 +143,16 @@ def finished(path: Path) -> list[dict[str, Any]]:
 
 
 def all_cases(seed: int) -> list[Case]:
-    """Nulls, far seeds, a law and a held-out law of every seventh cause, an outside effect; of all kinds in turn."""
-    causes = list(LAWS)[::7]
-    held = [(cause, next(law for law in LAWS[cause] if law.held_out)) for cause in causes]
+    """Nulls, a far seed, laws and held-out laws of other causes, an outside effect; of all kinds in turn."""
+    causes = list(LAWS)
+    own = [(cause, LAWS[cause][0]) for cause in causes[5::15]]
+    held = [(cause, next(law for law in LAWS[cause] if law.held_out)) for cause in causes[:10:9]]
     kinds = [
-        [Case("drawn_outside", ((name, 1.0),), DRAWN, seed + 60 + k) for k, name in enumerate(list(OUTSIDE)[2:3])],
+        [Case("drawn_outside", ((list(OUTSIDE)[2], 1.0),), DRAWN, seed + 60)],
         [Case("held_out", ((f"{c}:{law.name}", 1.0),), DRAWN, seed + 40 + k) for k, (c, law) in enumerate(held)],
-        [Case("drawn_null", (), DRAWN, seed + k, NEAR) for k in range(8)],
-        [Case("law", ((f"{c}:{LAWS[c][0].name}", 1.0),), DRAWN, seed + 20 + k) for k, c in enumerate(causes)],
-        [Case("far_seed", (), DRAWN, seed + 10 + k, FAR) for k in range(2)],
+        [Case("drawn_null", (), DRAWN, seed + k, NEAR) for k in range(6)],
+        [Case("law", ((f"{c}:{law.name}", 1.0),), DRAWN, seed + 20 + k) for k, (c, law) in enumerate(own)],
+        [Case("far_seed", (), DRAWN, seed + 10, FAR)],
     ]
     return [case for turn in zip_longest(*kinds) for case in turn if case is not None]
 

@@ -144,12 +144,22 @@ def test_the_doctor_finds_nothing_wrong_here_and_says_what_it_looked_at(capsys, 
     assert areas <= {each["area"] for each in findings}
 
 
-def test_the_doctor_reports_a_domain_that_cannot_be(capsys, monkeypatch):
+@pytest.mark.parametrize("domain", ["500", "102", "-1", "x", "\u00b2", "9" * 5000])
+def test_the_doctor_reports_a_domain_that_cannot_be(domain, capsys, monkeypatch):
     pytest.importorskip("rclpy")
-    monkeypatch.setenv("ROS_DOMAIN_ID", "500")
+    monkeypatch.setenv("ROS_DOMAIN_ID", domain)
     assert run(["doctor", "--no-dds", "--json"]) == 2
     bad = [each for each in json.loads(capsys.readouterr().out) if each["state"] == "problem"]
     assert [each["what"] for each in bad] == ["ROS_DOMAIN_ID"]
+
+
+@pytest.mark.parametrize("domain", ["", "0", "007", "101"])
+def test_the_doctor_takes_a_domain_as_ros_reads_it(domain, capsys, monkeypatch):
+    pytest.importorskip("rclpy")
+    monkeypatch.setenv("ROS_DOMAIN_ID", domain)
+    run(["doctor", "--no-dds", "--json"])
+    states = {each["what"]: each["state"] for each in json.loads(capsys.readouterr().out)}
+    assert states["ROS_DOMAIN_ID"] == "ok"
 
 
 def test_names_complete():

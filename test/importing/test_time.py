@@ -139,3 +139,29 @@ def test_milliseconds_behind_a_colon_are_counted():
 def test_a_date_as_it_is_spoken_is_read():
     assert days_since_1970(time_parts("17. März 2026 10:00:00")[:3], "dmy", "log") == 20_529
     assert time_parts("1. 3. 2026 10:00:00")[:3] == ("1", "3", "2026")
+
+
+def test_a_month_of_digits_that_are_no_number_is_no_date():
+    with pytest.raises(InputError, match="is no date of the order dmy"):
+        days_since_1970(("17", "²²²", "2026"), "dmy", "log")
+
+
+@pytest.mark.parametrize(
+    "cells",
+    [
+        ["12-LIFT-2026"] * 4, ["1-abc-2026 10:00:00", "2-abc-2026 10:00:01"], ["12-45-2026", "12-46-2026"],
+        ["31-02-2024", "32-02-2024"], ["1-²²²-2026", "2-²²²-2026"],
+    ],
+)  # fmt: skip
+def test_numbers_of_jobs_and_parts_are_no_times(cells):
+    """A log with a column of job numbers, 12-LIFT-2026, was refused for them: "no date of the order dmy"."""
+    assert guess_time([texts(*cells)], "") is None
+
+
+def test_one_date_that_cannot_be_leaves_the_others_a_time():
+    cells = [f"30-01-2026 10:00:{k:02d}" for k in range(20)]
+    guess = guess_time([texts(*cells[:9], "30-02-2026 10:00:09", *cells[10:])], "")
+    assert guess is not None
+    assert guess.base.form == "datetime"
+    with pytest.raises(InputError, match="30-02-2026' is no date"):
+        seconds(texts(*cells[:9], "30-02-2026 10:00:09"), guess.base)

@@ -81,3 +81,12 @@ def test_an_old_number_is_an_old_message_but_not_for_ever() -> None:
 def test_the_mark_and_text_of_another_origin() -> None:
     assert read_mark(mark(False, 17)) == (False, 17)
     assert read_mark("") == read_mark("base_link") == read_mark("valid x") == (True, -1)
+
+
+@pytest.mark.parametrize("number", ["\u00b2", "1\u00b2", "9" * 20, "9" * 5000, "-1", "1_0", " 7", "\u0663"])
+def test_a_number_that_no_compensator_counts_to_is_text_of_another_origin(number: str) -> None:
+    """A superscript is a digit that is no number, and of 5000 digits Python makes none: whoever held the torque ended."""
+    assert read_mark(f"invalid {number}") == (True, -1)
+    held = HeldTorque()
+    assert held.take(100.0, 1.0, f"valid {number}")
+    assert held.take(200.0, 1.02, mark(True, 3))

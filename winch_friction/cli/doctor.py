@@ -196,7 +196,7 @@ def _ros() -> Iterator[Finding]:
         return
     yield Finding("ROS", "rclpy", GOOD, _version("ros-rclpy") or "of the sourced ROS")
     domain = os.environ.get("ROS_DOMAIN_ID", "0")
-    ok = domain.isdigit() and int(domain) <= 101
+    ok = domain.lstrip("0") in ("", *map(str, range(1, 102)))
     yield Finding("ROS", "ROS_DOMAIN_ID", GOOD if ok else BAD, domain, "" if ok else "use 0 ... 101")
     scope = os.environ.get("ROS_AUTOMATIC_DISCOVERY_RANGE", "SUBNET (default)")
     yield Finding(

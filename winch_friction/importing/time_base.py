@@ -168,7 +168,7 @@ def _order_of(parts: Sequence[Any]) -> tuple[str, bool]:
     dates = [p[:3] for p in parts if p[0] is not None]
     if max(_int(d[0]) for d in dates) > 31:
         return "ymd", True
-    if any(not d[1].isdigit() for d in dates):
+    if any(not d[1].isdecimal() for d in dates):
         return "dmy", True
     if max(_int(d[0]) for d in dates) > 12:
         return "dmy", True
@@ -251,7 +251,8 @@ def _from_text(columns: Sequence[LogColumn], base: TimeBase, where: str, place: 
             parts = (*parts[:5], with_zeros(parts[5]), *parts[6:])
         key = parts[:3]
         if key not in known:
-            known[key] = days_since_1970(key, base.order or "ymd", where) * _DAY if parts[0] is not None else 0.0
+            day = days_since_1970(key, base.order or "ymd", where, strict) if parts[0] is not None else 0.0
+            known[key] = day * _DAY
         seconds[row] = known[key] + clock_seconds(parts)
         if second and parts[5:8] == (second, None, None):
             minutes[before] = known[key], clock_seconds((*parts[:5], None, None))
@@ -292,4 +293,4 @@ def _zone(base: TimeBase, where: str) -> ZoneInfo | None:
 
 
 def _int(text: str) -> int:
-    return int(text) if text.isdigit() else 0
+    return int(text) if text.isdecimal() else 0

@@ -1,5 +1,6 @@
 """A cell that holds a date, a time of day, or both: its parts, and what they are in days and seconds."""
 
+import math
 import re
 from datetime import date, datetime, time, timedelta
 from typing import Any
@@ -51,6 +52,8 @@ def time_parts(cell: Any) -> tuple[Any, ...] | None:
     match = _STAMP.match(text)
     if not text or match is None or (match[1] is None and match[4] is None):
         return None
+    if match[2] and match[2].isalpha() and match[2][:3].lower() not in _MONTHS:  # a job's number: 12-LIFT-2026
+        return None
     mark = text[len(match[1])] if match[1] and len(match[1]) < len(text) else ""
     return (*match.groups(), mark)
 
@@ -72,17 +75,19 @@ def clock_seconds(parts: tuple[Any, ...]) -> float:
     return hour * 3600.0 + minute * 60.0 + second
 
 
-def days_since_1970(key: tuple[str, str, str], order: str, where: str) -> float:
-    """Days since 1970 of a date's three parts in an order; raises `InputError` for what is no date."""
+def days_since_1970(key: tuple[str, str, str], order: str, where: str, strict: bool = True) -> float:
+    """Days since 1970 of a date's three parts in an order; raises `InputError` for what is no date, or gives NaN."""
     named = dict(zip(order, key, strict=True))
     month = named["m"]
-    number = int(month) if month.isdigit() else _MONTHS.get(month[:3].lower(), 0)
+    number = int(month) if month.isdecimal() else _MONTHS.get(month[:3].lower(), 0)
     year = int(named["y"])
     if len(named["y"]) <= _SHORT_YEAR:
         year += 2000 if year < _THIS_CENTURY else 1900
     try:
         return (datetime(year, number, int(named["d"])) - datetime(1970, 1, 1)).days
     except ValueError as error:
+        if not strict:
+            return math.nan
         raise InputError(f"{where}: '{'-'.join(key)}' is no date of the order {order}; set time.order") from error
 
 

@@ -265,6 +265,7 @@ class CompensatorService:
 
 
 VALID, INVALID = "valid", "invalid"
+MOST_DIGITS = 18  # of a number of messages: of more than 4300 Python makes none
 
 
 def mark(valid: bool, sequence: int) -> str:
@@ -275,6 +276,6 @@ def mark(valid: bool, sequence: int) -> str:
 def read_mark(text: str) -> tuple[bool, int]:
     """Validity and number from `header.frame_id`; text of another origin is valid, without a number (-1)."""
     word, _, number = text.partition(" ")
-    if word not in (VALID, INVALID) or not number.isdigit():
+    if word not in (VALID, INVALID) or not (number.isascii() and number.isdigit() and len(number) <= MOST_DIGITS):
         return True, -1
     return word == VALID, int(number)

@@ -85,7 +85,7 @@ def test_the_mark_and_text_of_another_origin() -> None:
 
 @pytest.mark.parametrize("number", ["\u00b2", "1\u00b2", "9" * 20, "9" * 5000, "-1", "1_0", " 7", "\u0663"])
 def test_a_number_that_no_compensator_counts_to_is_text_of_another_origin(number: str) -> None:
-    """A superscript is a digit that is no number, and of 5000 digits Python makes none: whoever held the torque died."""
+    """A superscript is a digit and no number; of 5000 digits Python makes none: whoever held the torque died."""
     assert read_mark(f"invalid {number}") == (True, -1)
     held = HeldTorque()
     assert held.take(100.0, 1.0, f"valid {number}")

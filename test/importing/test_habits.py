@@ -202,6 +202,16 @@ def test_commas_between_marks_that_cut_every_line_are_of_decimals(head, tmp_path
     assert [each.name for each in read_text_log(tmp_path / "log.csv").columns] == ["t", "n", "p"]
 
 
+@pytest.mark.parametrize("text", ["OK;RUN", "a\tb", "on|off", "1;2", "1|2", "lift; slow; 55 t", "a;b;c;d;e;f;g"])
+def test_another_mark_in_a_text_of_every_line_does_not_cut_a_table_of_commas(text, tmp_path):
+    """A state that was written OK;RUN in every row cut the lines alike: "no rows of numbers found"."""
+    rows = [f"{0.1 * k:.1f},{k % 7},{150 + k}.5,{text}" for k in range(100)]
+    (tmp_path / "log.csv").write_text("\n".join(["t,n,p,state", *rows]) + "\n")
+    columns = read_text_log(tmp_path / "log.csv").columns
+    assert [each.name for each in columns] == ["t", "n", "p", "state"]
+    assert columns[2].values[7] == 157.5
+
+
 @pytest.mark.parametrize("properties", [(), ("Length", "Minimum", "Maximum", "Offset", "Factor", "Mean:")])
 def test_labelled_properties_of_columns_are_no_values(properties, tmp_path):
     """Of `Length; 3000` in the column of the time it was said that the time goes back by 3000 s."""

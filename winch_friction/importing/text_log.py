@@ -2,6 +2,7 @@
 
 import csv
 import gzip
+import re
 import zipfile
 import zlib
 from collections import Counter
@@ -25,6 +26,7 @@ _WESTERN = ("cp1252", "latin-1")  # what any bytes can be read as
 _HEAD_LINES, _ACCENTED = 5, 0.4  # lines with the names; of letters: no Western language has a fifth of them accented
 _MOST_COLUMNS = 1000  # no winch log has more
 _DELIMITERS = (";", ",", "\t", "|")
+_DECIMAL = re.compile(r"[^,]*\d,\d[^,]*")
 _CUT = 0.95  # of the lines, that a mark between columns cuts alike; what is left is a preamble
 
 
@@ -145,7 +147,7 @@ def _delimiter(lines: Sequence[str]) -> str:
         return lines[0].strip().strip('"')[4:5] or ";"
     sample = [line for line in lines[: 2 * SEEN] if line.strip()][-SEEN:]
     best, delimiter = 0.0, " "
-    by_others = any(_cuts_all(sample, each) for each in _DELIMITERS if each != ",")  # commas then are of decimals
+    by_others = any(_cuts_all(sample, each) and _of_decimals(sample, each) for each in _DELIMITERS if each != ",")
     for each in (*(each for each in _DELIMITERS if not (each == "," and by_others)), " "):
         score = _delimiter_score(sample, each)
         if score > best:
@@ -157,6 +159,12 @@ def _cuts_all(sample: Sequence[str], delimiter: str) -> bool:
     """Whether a mark cuts nearly every line into as many cells, two or more of them with something in it."""
     widths = Counter(len(row) for row in (_cut(line, delimiter) for line in sample) if sum(map(bool, row)) > 1)
     return bool(widths) and widths.most_common(1)[0][1] >= _CUT * len(sample)
+
+
+def _of_decimals(sample: Sequence[str], delimiter: str) -> bool:
+    """Whether the commas that another mark leaves in its cells stand there for decimals, one between digits."""
+    commas = [cell for line in sample for cell in _cut(line, delimiter) if "," in cell]
+    return 2 * sum(_DECIMAL.fullmatch(cell) is not None for cell in commas) >= len(commas)
 
 
 def _delimiter_score(sample: Sequence[str], delimiter: str) -> float:

@@ -52,8 +52,6 @@ def time_parts(cell: Any) -> tuple[Any, ...] | None:
     match = _STAMP.match(text)
     if not text or match is None or (match[1] is None and match[4] is None):
         return None
-    if match[2] and match[2].isalpha() and match[2][:3].lower() not in _MONTHS:  # a job's number: 12-LIFT-2026
-        return None
     mark = text[len(match[1])] if match[1] and len(match[1]) < len(text) else ""
     return (*match.groups(), mark)
 

@@ -56,10 +56,13 @@ def deciding() -> tuple[str, ...]:
 
 
 def scaled(value: Any, factor: float) -> Any:
-    """A threshold times a factor: a count stays one, of a table by size the second figure of each row changes."""
+    """A threshold times a factor: a count stays one, a share is 1 at most, of a table by size the second figure of each
+    row changes."""
     if isinstance(value, tuple):
         return tuple((size, bar * factor) for size, bar in value)
-    return max(1, round(value * factor)) if isinstance(value, int) else value * factor
+    if isinstance(value, int):
+        return max(1, round(value * factor))
+    return min(value * factor, 1.0) if value < 1.0 else value * factor
 
 
 def branched(
@@ -178,7 +181,7 @@ def table(rows: Sequence[dict[str, Any]]) -> str:
         "|---|---|" + "---|" * (len(COUNTED) + 1),
         f"| **as frozen** | 1 | {' | '.join(_counts(list(frozen.values())))} | |",
     ]
-    same: list[str] = []
+    same: list[tuple[str, float]] = []
     errors = 0
     for (name, factor), own in sorted(branches.items()):
         if not name:
@@ -189,8 +192,11 @@ def table(rows: Sequence[dict[str, Any]]) -> str:
             some = "" if len(own) == whole else f"({len(own)} of {whole} sets) "
             lines.append(f"| `{name}` | {factor:g} | {' | '.join(_counts(own))} | {some}{'; '.join(differ)} |")
         else:
-            same.append(f"`{name}` × {factor:g}")
-    lines += ["", f"No verdict and no name changes with {len(same)}: " + ", ".join(same) + "."]
+            same.append((name, factor))
+    both = [f"`{name}`" for name, factor in same if factor == FACTORS[0] and (name, FACTORS[1]) in same]
+    one = [f"`{name}` × {factor:g}" for name, factor in same if f"`{name}`" not in both]
+    lines += ["", f"No verdict and no name changes with {len(both)}, halved or doubled: {', '.join(both)}."]
+    lines += ["", f"Nor with {', '.join(one)}."] if one else []
     return "\n".join([*lines, "", f"Ended with an error: {errors}."])
 
 
@@ -227,7 +233,7 @@ def write_table(path: Path, results: Path) -> None:
         f"* {frozen} data sets (seeds from {FIRST_SEED}), {len(deciding())} thresholds, {len(rows) - frozen} verdicts\n"
         "* Not scanned: what is asked of a log before anything is searched (`" + "`, `".join(ADEQUACY) + "`) and how "
         "finely things are worked out (`" + "`, `".join(SETTINGS) + "`)\n"
-        "* A count is rounded and at least 1; of `significance` and `levels_apart` the bar of each row changes\n\n"
+        "* A count is rounded and at least 1, a share 1 at most; of `significance` and `levels_apart` the bar of each row changes\n\n"
         f"{table(rows)}\n"
     )
 

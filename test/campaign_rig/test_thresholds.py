@@ -73,7 +73,15 @@ def test_a_search_that_fails_as_frozen_says_so_and_leaves_the_table_as_it_was():
 
 @pytest.mark.parametrize(
     ("value", "factor", "changed"),
-    [(0.15, 0.5, 0.075), (3, 0.5, 2), (1, 0.5, 1), (3, 2.0, 6), (((10, 9.0), (6, 14.0)), 0.5, ((10, 4.5), (6, 7.0)))],
+    [
+        (0.15, 0.5, 0.075),
+        (0.8, 2.0, 1.0),
+        (1.05, 2.0, 2.1),
+        (3, 0.5, 2),
+        (1, 0.5, 1),
+        (3, 2.0, 6),
+        (((10, 9.0), (6, 14.0)), 0.5, ((10, 4.5), (6, 7.0))),
+    ],
 )
 def test_a_count_stays_one_and_of_a_table_the_bars_change(value, factor, changed):
     assert scaled(value, factor) == changed
@@ -112,6 +120,8 @@ def test_the_table_says_what_changes_and_where_and_names_what_does_not(tmp_path)
         _row(null, *FROZEN, "nothing_missing"), _row(law, *FROZEN, "missing_effect", **named),
         _row(null, "left_over", 0.5, "unexplained"), _row(law, "left_over", 0.5, "missing_effect", **named),
         _row(null, "left_over", 2.0, "nothing_missing"), _row(law, "left_over", 2.0, "missing_effect", **named),
+        *(_row(null, "never_noise", factor, "nothing_missing") for factor in (0.5, 2.0)),
+        *(_row(law, "never_noise", factor, "missing_effect", **named) for factor in (0.5, 2.0)),
         _row(law, "outdone", 2.0, "missing_effect", sets=[["brake_drag"]], wrong_single=True),
     ]  # fmt: skip
     text = table(rows)
@@ -120,7 +130,8 @@ def test_the_table_says_what_changes_and_where_and_names_what_does_not(tmp_path)
     assert "| 0.5 | 1 of 1 | " in lines["left_over"]
     assert lines["left_over"].endswith("| a null: `unexplained` |")
     assert lines["outdone"].endswith("| (1 of 2 sets) wear_drift:catalogue: `missing_effect` brake_drag |")
-    assert "No verdict and no name changes with 1: `left_over` × 2." in text
+    assert "No verdict and no name changes with 1, halved or doubled: `never_noise`." in text
+    assert "\nNor with `left_over` × 2.\n" in text
     assert text.endswith("with an error: 0.")
     out = tmp_path / "rows.jsonl"
     out.write_text("\n".join(json.dumps(row) for row in [rows[0], rows[0] | {"verdict": "again"}]) + '\n{"key": "cut')

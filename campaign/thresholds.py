@@ -233,7 +233,8 @@ def write_table(path: Path, results: Path) -> None:
         f"* {frozen} data sets (seeds from {FIRST_SEED}), {len(deciding())} thresholds, {len(rows) - frozen} verdicts\n"
         "* Not scanned: what is asked of a log before anything is searched (`" + "`, `".join(ADEQUACY) + "`) and how "
         "finely things are worked out (`" + "`, `".join(SETTINGS) + "`)\n"
-        "* A count is rounded and at least 1, a share 1 at most; of `significance` and `levels_apart` the bar of each row changes\n\n"
+        "* A count is rounded and at least 1, a share 1 at most; of `significance` and `levels_apart` each row's bar "
+        "changes\n\n"
         f"{table(rows)}\n"
     )
 

@@ -82,7 +82,7 @@ def test_a_search_that_fails_as_frozen_says_so_and_leaves_the_table_as_it_was():
         (3, 2.0, 6),
         (((10, 9.0), (6, 14.0)), 0.5, ((10, 4.5), (6, 7.0))),
     ],
-)
+)  # fmt: skip
 def test_a_count_stays_one_and_of_a_table_the_bars_change(value, factor, changed):
     assert scaled(value, factor) == changed
     assert type(scaled(value, factor)) is type(value)

@@ -1,22 +1,16 @@
 """Which topics of a recording are the winch's, told from their names, types and numbers alone: no bag is written."""
 
+import re
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from winch_friction.physics.errors import InputError
-from winch_friction.records.bag_file import (
-    Bag,
-    _clock_offset,
-    _displacement_unit,
-    _groups,
-    _matched,
-    _plain_channels,
-    _speed_topic,
-)
+from winch_friction.records.bag_file import Bag, _clock_offset, _displacement_unit, _plain_channels
 from winch_friction.records.bag_joints import joints_on, no_speed, told_joint
 from winch_friction.records.bag_storage import lost_of, readable, storage_of
+from winch_friction.records.bag_topics import groups_of, matched, speed_topic
 from winch_friction.records.bag_write import MESSAGES, BagWriter
 from winch_friction.records.topics import FLOAT64, JOINT_STATE, TopicMap, joint_state, stamp_header
 
@@ -67,7 +61,7 @@ def bag(*messages, **conventions):
     ],
 )
 def test_the_speed_is_on_the_topic_of_its_namespace(namespace, names, found):
-    assert _speed_topic(PATH, names, namespace) == found
+    assert speed_topic(PATH, names, namespace) == found
 
 
 @pytest.mark.parametrize(
@@ -77,7 +71,7 @@ def test_the_speed_is_on_the_topic_of_its_namespace(namespace, names, found):
 )  # fmt: skip
 def test_a_speed_that_nobody_can_tell_is_asked_for(names, said):
     with pytest.raises(InputError, match=said):
-        _speed_topic(PATH, names, "")
+        speed_topic(PATH, names, "")
 
 
 def named(*topics, **counts):
@@ -88,20 +82,46 @@ def named(*topics, **counts):
 def test_topics_below_the_speeds_namespace_are_the_winchs_and_a_remapped_one_is_where_it_is_said():
     reader = named("/aft/winch/joint_states", "/aft/winch/hook_load", "/fore/winch/wire_out", "/load_cell",
                    "/aft/winch/silent", silent=0)  # fmt: skip
-    found = _matched(PATH, reader, "", {"winch/rope_force": "/load_cell"})
+    found = matched(PATH, reader, "", {"winch/rope_force": "/load_cell"})
     assert found == {
         SPEED: "/aft/winch/joint_states", "winch/hook_load": "/aft/winch/hook_load", "winch/rope_force": "/load_cell",
     }  # fmt: skip
     # a speed of another name has no namespace: nothing else is guessed
-    assert _matched(PATH, reader, "", {SPEED: "/load_cell"}) == {SPEED: "/load_cell"}
+    assert matched(PATH, reader, "", {SPEED: "/load_cell"}) == {SPEED: "/load_cell"}
     with pytest.raises(InputError, match="topic '/moon' has no message; the bag has /aft/winch/hook_load, /aft"):
-        _matched(PATH, reader, "", {SPEED: "/moon"})
+        matched(PATH, reader, "", {SPEED: "/moon"})
+
+
+@pytest.mark.parametrize(
+    ("remap", "said"),
+    [
+        (
+            {"a": "b"},
+            ["'a' is no topic of the winch's: .*winch/joint_states.*winch/GROUP/pressure_a", "'b' has no mes"],
+        ),
+        ({"winch/joint_state": "/load_cell"}, ["'winch/joint_state' is no topic of the winch's"]),
+        ({"winch/hook_load": "/moon"}, ["topic '/moon' has no message; the bag has /load_cell, /winch/joint_states"]),
+        ({"winch/hook_load": ""}, ["topic '' has no message"]),
+        ({"winch/main/elbow": "/load_cell"}, ["'winch/main/elbow' is no topic"]),
+        ({"winch/a/b/pressure_a": "/load_cell"}, ["'winch/a/b/pressure_a' is no topic"]),
+        ({"winch/wire_out": "/x", SPEED: "/y"}, ["topic '/x' has no message", "topic '/y' has no message"]),
+    ],
+)
+def test_a_topic_is_remapped_of_the_winchs_to_one_of_the_bag(remap, said):
+    """--remap a=b ended in a KeyError, and a name with a slip was not heeded and not said."""
+    reader = named("/winch/joint_states", "/load_cell")
+    with pytest.raises(InputError) as caught:
+        matched(PATH, reader, "", remap)
+    assert len(caught.value.problems) == len(said)
+    for problem, words in zip(caught.value.problems, said, strict=True):
+        assert re.search(f"^{PATH}: .*{words}", problem)
+    assert matched(PATH, reader, "", {"winch/aft/pressure_b": "/load_cell"})["winch/aft/pressure_b"] == "/load_cell"
 
 
 def test_a_motor_group_is_told_by_either_of_its_pressures_once_in_order():
     found = ("winch/main/pressure_b", "winch/aft/displacement", "winch/aft/pressure_a", "winch/main/pressure_a",
              "winch/pressure_a", "winch/hook_load", "winch/arm/elbow")  # fmt: skip
-    assert _groups(dict.fromkeys(found, "/x")) == ("main", "aft")
+    assert groups_of(dict.fromkeys(found, "/x")) == ("main", "aft")
 
 
 def test_what_came_plain_is_read_plain_but_a_speed_must_be_asked_for():

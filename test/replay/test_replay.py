@@ -257,7 +257,11 @@ def test_the_verb(tmp_path, bag, capsys):
     assert main.run([*arguments, "--model", "nonsense"]) == 2
     assert main.run(["replay", str(tmp_path / "nothing"), *arguments[2:]]) == 2
     assert main.run([*arguments, "--remap", "x"]) == 2
-    assert "Traceback" not in capsys.readouterr().err
+    assert main.run([*arguments, "--remap", "a=b"]) == 2
+    assert main.run([*arguments, "--model", ""]) == 2
+    said = capsys.readouterr().err
+    assert "Traceback" not in said
+    assert said.splitlines()[-1] == "winch-friction: --model: give a model file or a shipped name; list has them"
 
 
 def test_a_model_with_a_users_own_term_needs_its_file(tmp_path, bag, capsys):

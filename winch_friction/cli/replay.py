@@ -74,6 +74,9 @@ def command(
             "name that ends so"
         )
     problems = Problems()
+    with problems:
+        if not model:
+            raise InputError("--model: give a model file or a shipped name; list has them")
     for written in (out, picture):
         with problems:
             refuse_input_as_output(written, [recording, model, crane])

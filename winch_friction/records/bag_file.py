@@ -12,11 +12,11 @@ from winch_friction.physics.errors import InputError
 from winch_friction.physics.winch.crane import Crane
 from winch_friction.records.bag_joints import joints_on, no_speed, told_joint
 from winch_friction.records.bag_storage import readable, refused, storage_of
+from winch_friction.records.bag_topics import SPEED_TOPIC, groups_of, matched
 from winch_friction.records.cdr import LITTLE_ENDIAN, READERS
 from winch_friction.records.topics import FLOAT64, Input, TopicMap, crane_topics, stamp_time
 
 NANOSECOND = 1e-9
-SPEED_TOPIC = "winch/joint_states"  # below a winch's namespace
 _PEEKED = 20  # messages looked at to tell a displacement's unit
 _LARGEST_DISPLACEMENT = 1e-3  # m^3/rad, 6300 cm^3/rev: a number above is a fraction
 _NO_TIME_YET = 1.0  # s after the stamps' zero beyond which a stamp of 0 is of a sender that knows no time yet
@@ -143,8 +143,8 @@ def open_bag(
         if reader.message_count == 0:
             raise InputError(f"{path}: the bag holds no message; was the recorder started before the nodes?")
         typestore = _typestore()
-        found = _matched(path, reader, namespace, dict(remap or {}))
-        groups = _groups(found)
+        found = matched(path, reader, namespace, dict(remap or {}))
+        groups = groups_of(found)
         topics = _topics(path, reader, typestore, crane, groups, found, conventions)
         actual = {contract: topic for contract, topic in found.items() if contract in topics.inputs}
         bag = Bag(path.name, topics, actual, [], reader, typestore)
@@ -185,39 +185,6 @@ def _typestore() -> Any:
     from rosbags.typesys import Stores, get_typestore
 
     return get_typestore(Stores.ROS2_JAZZY)
-
-
-def _matched(path: Path, reader: Any, namespace: str, remap: dict[str, str]) -> dict[str, str]:
-    """Contract topic -> topic in the bag, for all topics that end like one of the winch's."""
-    names = sorted({each.topic for each in reader.connections if each.msgcount})
-    speed = remap.get("winch/joint_states") or _speed_topic(path, names, namespace)
-    if speed not in names:
-        raise InputError(f"{path}: topic '{speed}' has no message; the bag has {', '.join(names)}")
-    prefix = speed.removesuffix("winch/joint_states")
-    own = {name[len(prefix) :]: name for name in names if prefix != speed and name.startswith(f"{prefix}winch/")}
-    return {**own, **remap, "winch/joint_states": speed}
-
-
-def _speed_topic(path: Path, names: list[str], namespace: str) -> str:
-    ending = f"/{namespace.strip('/')}/{SPEED_TOPIC}".replace("//", "/")
-    found = [name for name in names if name.endswith(ending)]
-    if namespace and ending in found:  # '/': the one without; a namespace within another is another winch's
-        return ending
-    if len(found) == 1:
-        return found[0]
-    if found:
-        spaces = ", ".join(each.removesuffix(SPEED_TOPIC).rstrip("/") or "/" for each in found)
-        way = f"choose one with --namespace: {spaces}; where a verb has none, 'convert run' makes a run file of one"
-        raise InputError(f"{path}: several winches: {', '.join(found)}; {way}")
-    raise InputError(
-        f"{path}: no message on a topic '...{ending}'; the bag has {', '.join(names)}; remap winch/joint_states to the "
-        "topic of the winch's speed"
-    )
-
-
-def _groups(found: Mapping[str, str]) -> tuple[str, ...]:
-    parts = [contract.split("/") for contract in found]
-    return tuple(dict.fromkeys(p[1] for p in parts if len(p) == 3 and p[2] in ("pressure_a", "pressure_b")))
 
 
 def _topics(

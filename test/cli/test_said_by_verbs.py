@@ -426,6 +426,13 @@ def test_a_table_for_a_pipe_has_a_line_per_row_and_json_no_infinity(monkeypatch,
     assert json.loads(capsys.readouterr().out) == {"a": None, "b": 2.0, "c": [1.0, None]}
 
 
+def test_a_cell_is_shown_as_it_stands(capsys):
+    """Colons were read as names of emoji: of a ratio 10:100:20 the hundred became a picture."""
+    show_table("of:x:", ("t [s]",), [("10:100:20",), ("root:x:0",)])
+    shown = capsys.readouterr().out
+    assert all(each in shown for each in ("10:100:20", "root:x:0", "of:x:", "t [s]"))
+
+
 # -- a page that listens
 def test_a_reader_that_comes_late_begins_with_what_was_kept_and_hears_the_end():
     sent = Broadcast()

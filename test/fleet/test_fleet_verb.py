@@ -159,14 +159,16 @@ def test_a_real_scheduler_and_worker_and_a_kill_in_the_middle(cranes, tmp_path, 
         (["replay", "nowhere"], "no such file"),
         (["replay", "."], "no recording there"),
         (["replay", ".", "--storage", "endpoint"], "NAME=VALUE"),
+        (["check", "one.csv", "--model", ""], "'' is neither a file nor a shipped name in models"),
+        (["check", "one.csv", "--crane", "{ship}.yaml"], "'{ship}.yaml' is neither a file nor a shipped name in cran"),
     ],
 )
 def test_what_a_fleet_cannot_do_is_said(tmp_path, capsys, monkeypatch, arguments, said):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "notes.txt").write_text("x")
-    if arguments[0] == "weld":
+    if arguments[0] == "weld" or "one.csv" in arguments:
         (tmp_path / "one.csv").write_text("time\n")
-    assert main.run(["fleet", *arguments, *FILES, "--out", str(tmp_path / "out")]) == 2
+    assert main.run(["fleet", *arguments[:2], *FILES, *arguments[2:], "--out", str(tmp_path / "out")]) == 2
     assert said in capsys.readouterr().err
 
 

@@ -28,8 +28,8 @@ class _Console(Console):
         raise BrokenPipeError
 
 
-stdout = _Console(width=_width())
-stderr = _Console(stderr=True)
+stdout = _Console(width=_width(), emoji=False)  # a ratio 10:100:20 is no picture
+stderr = _Console(stderr=True, emoji=False)
 
 
 def show_table(title: str, columns: Sequence[str], rows: Iterable[Sequence[Any]]) -> None:

@@ -73,7 +73,8 @@ def command(
         recordings, tables = _without_tables(find_recordings(sources, options, own_folders(out)))
     for kind, name in (("cranes", crane), ("models", model)):
         with problems:
-            if name and "{" not in name:  # else each recording's own; what it says the workers read, who have its terms
+            # else each recording's own; what it says the workers read, who have its terms
+            if (name or kind == "models") and "{crane}" not in name:
                 shipped(kind, name)
     problems.say()
     tasks = plan(verb, recordings, out, crane, model, _flags(option or []), options)

@@ -14,9 +14,9 @@ import json
 import multiprocessing
 import os
 import time
+from collections import Counter
 from collections.abc import Callable, Collection, Sequence
 from functools import partial
-from itertools import zip_longest
 from pathlib import Path
 from typing import Any
 
@@ -146,18 +146,24 @@ def finished(path: Path) -> list[dict[str, Any]]:
 
 
 def all_cases(seed: int) -> list[Case]:
-    """Nulls, a far seed, laws and held-out laws of other causes, an outside effect; of all kinds in turn."""
+    """An outside effect, nulls, laws and held-out laws of other causes, a far seed; of every kind one before others."""
     causes = list(LAWS)
-    own = [(cause, LAWS[cause][0]) for cause in causes[5::15]]
     held = [(cause, next(law for law in LAWS[cause] if law.held_out)) for cause in causes[:10:9]]
-    kinds = [
-        [Case("drawn_outside", ((list(OUTSIDE)[2], 1.0),), DRAWN, seed + 60)],
-        [Case("held_out", ((f"{c}:{law.name}", 1.0),), DRAWN, seed + 40 + k) for k, (c, law) in enumerate(held)],
-        [Case("drawn_null", (), DRAWN, seed + k, NEAR) for k in range(6)],
-        [Case("law", ((f"{c}:{law.name}", 1.0),), DRAWN, seed + 20 + k) for k, (c, law) in enumerate(own)],
-        [Case("far_seed", (), DRAWN, seed + 10, FAR)],
+    named = [("law", cause, LAWS[cause][0], 20 + k) for k, cause in enumerate(causes[5::15])]
+    named += [("held_out", cause, law, 40 + k) for k, (cause, law) in enumerate(held)]
+    laws = [Case(kind, ((f"{c}:{law.name}", 1.0),), DRAWN, seed + k) for kind, c, law, k in named]
+    nulls = [Case("drawn_null", (), DRAWN, seed + k, NEAR) for k in range(6)]
+    outside = Case("drawn_outside", ((list(OUTSIDE)[2], 1.0),), DRAWN, seed + 60)
+    return [
+        outside,
+        laws[2],
+        nulls[0],
+        laws[0],
+        Case("far_seed", (), DRAWN, seed + 10, FAR),
+        laws[1],
+        *nulls[1:],
+        laws[3],
     ]
-    return [case for turn in zip_longest(*kinds) for case in turn if case is not None]
 
 
 COUNTED = (
@@ -169,13 +175,11 @@ COUNTED = (
 
 
 def table(rows: Sequence[dict[str, Any]]) -> str:
-    """Markdown: a row for each threshold that changes a verdict or a name, the others in one line."""
+    """Markdown, of `whole` data sets: a row for each threshold that changes a verdict or a name, the others named."""
     frozen = {row["key"]: row for row in rows if (row["threshold"], row["factor"]) == FROZEN}
     branches: dict[tuple[str, float], list[dict[str, Any]]] = {}
     for row in rows:
-        if row["key"] in frozen:
-            branches.setdefault((row["threshold"], row["factor"]), []).append(row)
-    whole = max((len(own) for own in branches.values()), default=0)
+        branches.setdefault((row["threshold"], row["factor"]), []).append(row)
     lines = [
         "| threshold | times | " + " | ".join(name for name, _, _ in COUNTED) + " | other than as frozen |",
         "|---|---|" + "---|" * (len(COUNTED) + 1),
@@ -188,9 +192,8 @@ def table(rows: Sequence[dict[str, Any]]) -> str:
             continue
         differ = [_said(row) for row in own if _outcome(row) != _outcome(frozen[row["key"]])]
         errors += sum("error" in row for row in own)
-        if differ or len(own) < whole:
-            some = "" if len(own) == whole else f"({len(own)} of {whole} sets) "
-            lines.append(f"| `{name}` | {factor:g} | {' | '.join(_counts(own))} | {some}{'; '.join(differ)} |")
+        if differ:
+            lines.append(f"| `{name}` | {factor:g} | {' | '.join(_counts(own))} | {'; '.join(differ)} |")
         else:
             same.append((name, factor))
     both = [f"`{name}`" for name, factor in same if factor == FACTORS[0] and (name, FACTORS[1]) in same]
@@ -198,6 +201,13 @@ def table(rows: Sequence[dict[str, Any]]) -> str:
     lines += ["", f"No verdict and no name changes with {len(both)}, halved or doubled: {', '.join(both)}."]
     lines += ["", f"Nor with {', '.join(one)}."] if one else []
     return "\n".join([*lines, "", f"Ended with an error: {errors}."])
+
+
+def whole(rows: Sequence[dict[str, Any]]) -> list[dict[str, Any]]:
+    """The rows of the data sets of which every threshold has been scanned."""
+    counts = Counter(row["key"] for row in rows)
+    frozen = {row["key"] for row in rows if (row["threshold"], row["factor"]) == FROZEN}
+    return [row for row in rows if row["key"] in frozen and counts[row["key"]] == max(counts.values())]
 
 
 def _outcome(row: dict[str, Any]) -> tuple[Any, ...]:
@@ -223,7 +233,7 @@ def _counts(rows: Sequence[dict[str, Any]]) -> list[str]:
 
 def write_table(path: Path, results: Path) -> None:
     """The page: what was run, and how the verdicts change."""
-    rows = finished(results)
+    rows = whole(finished(results))
     commits = ", ".join(sorted({row["commit"] for row in rows}))
     frozen = sum((row["threshold"], row["factor"]) == FROZEN for row in rows)
     path.write_text(

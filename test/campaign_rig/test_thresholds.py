@@ -17,6 +17,7 @@ from campaign.thresholds import (
     finished,
     scaled,
     table,
+    whole,
 )
 from winch_friction.discrepancy.thresholds import LIMITS, Thresholds
 
@@ -122,6 +123,7 @@ def test_the_table_says_what_changes_and_where_and_names_what_does_not(tmp_path)
         _row(null, "left_over", 2.0, "nothing_missing"), _row(law, "left_over", 2.0, "missing_effect", **named),
         *(_row(null, "never_noise", factor, "nothing_missing") for factor in (0.5, 2.0)),
         *(_row(law, "never_noise", factor, "missing_effect", **named) for factor in (0.5, 2.0)),
+        _row(null, "outdone", 2.0, "nothing_missing"),
         _row(law, "outdone", 2.0, "missing_effect", sets=[["brake_drag"]], wrong_single=True),
     ]  # fmt: skip
     text = table(rows)
@@ -129,10 +131,12 @@ def test_the_table_says_what_changes_and_where_and_names_what_does_not(tmp_path)
     assert lines["**as frozen**"].startswith("| **as frozen** | 1 | 0 of 1 | 0 of 0 | 1 of 1 | 0 of 0 | 0 of 2 |")
     assert "| 0.5 | 1 of 1 | " in lines["left_over"]
     assert lines["left_over"].endswith("| a null: `unexplained` |")
-    assert lines["outdone"].endswith("| (1 of 2 sets) wear_drift:catalogue: `missing_effect` brake_drag |")
+    assert lines["outdone"].endswith("| wear_drift:catalogue: `missing_effect` brake_drag |")
     assert "No verdict and no name changes with 1, halved or doubled: `never_noise`." in text
     assert "\nNor with `left_over` × 2.\n" in text
     assert text.endswith("with an error: 0.")
+    begun = [_row("law/x*1/drawn/3", name, 0.5, "unexplained") for name in ("left_over", "outdone")]
+    assert whole([*rows, *begun]) == rows  # what was not searched as frozen is compared with nothing
     out = tmp_path / "rows.jsonl"
     out.write_text("\n".join(json.dumps(row) for row in [rows[0], rows[0] | {"verdict": "again"}]) + '\n{"key": "cut')
     assert [row["verdict"] for row in finished(out)] == ["again"]

@@ -11,17 +11,11 @@ import multiprocessing
 from collections import Counter
 from typing import Any
 
+from campaign.gap import diagnose_or_say
 from campaign.gap_cases import Case
 from campaign.rig import DRAWN
 
 FIRST_SEED = 900_000
-
-
-def judged(case: Case) -> dict[str, Any]:
-    """One diagnosis."""
-    from campaign.gap import diagnose_or_say
-
-    return diagnose_or_say(case)
 
 
 def quantiles(rows: list[dict[str, Any]]) -> str:
@@ -46,7 +40,7 @@ def main() -> None:
     chosen = parser.parse_args()
     cases = [Case("drawn_null", (), DRAWN, chosen.first_seed + k) for k in range(chosen.nulls)]
     with multiprocessing.get_context("spawn").Pool(chosen.processes) as pool:
-        print(quantiles(pool.map(judged, cases, chunksize=1)))
+        print(quantiles(pool.map(diagnose_or_say, cases, chunksize=1)))
 
 
 if __name__ == "__main__":

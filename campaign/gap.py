@@ -7,13 +7,14 @@ table goes to docs/campaign_gap.md. Seeds start at 100000; development used seed
 """
 
 import argparse
+import contextlib
 import json
 import multiprocessing
 import os
 import resource
 import tempfile
 import time
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -102,16 +103,16 @@ def diagnose_or_say(case: Case, cells: float = 0.0) -> dict[str, Any]:
         }
 
 
-def finished(path: Path) -> dict[str, dict[str, Any]]:
-    """Results by case; a line cut off by an interruption is dropped."""
-    found = {}
+def rows_of(path: Path) -> Iterator[dict[str, Any]]:
+    """Results, one a line, as they were written; a line cut off by an interruption is dropped."""
     for line in path.read_text().splitlines() if path.is_file() else []:
-        try:
-            row = json.loads(line)
-        except json.JSONDecodeError:
-            continue
-        found[row["key"]] = row
-    return found
+        with contextlib.suppress(json.JSONDecodeError):
+            yield json.loads(line)
+
+
+def finished(path: Path) -> dict[str, dict[str, Any]]:
+    """Results by case."""
+    return {row["key"]: row for row in rows_of(path)}
 
 
 def run(cases: Iterable[Case], processes: int, path: Path, until: float = float("inf"), cells: float = 0.0) -> None:

@@ -20,12 +20,10 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-for threads in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS"):
-    os.environ.setdefault(threads, "1")  # before numpy: one process per core, not several threads in each
-
-from campaign.commit import commit  # noqa: E402
-from campaign.gap_cases import FAR, NEAR, Case  # noqa: E402
-from campaign.rig import DRAWN, LAWS, OUTSIDE  # noqa: E402
+from campaign.commit import commit
+from campaign.gap import diagnose_or_say, rows_of  # before numpy: it gives each process one thread
+from campaign.gap_cases import FAR, NEAR, Case
+from campaign.rig import DRAWN, LAWS, OUTSIDE
 
 FIRST_SEED = 910_000
 RESULTS = Path("out/thresholds/results.jsonl")
@@ -115,8 +113,6 @@ def branched(
 
 def scan(case: Case, names: Sequence[str], path: Path) -> str:
     """All branches of one data set, each a line of the results as soon as it has ended."""
-    from campaign.gap import diagnose_or_say
-
     done = {(row["threshold"], row["factor"]) for row in finished(path) if row["key"] == case.key}
     wanted = [name for name in names if any((name, factor) not in done for factor in FACTORS)]
     measured = commit()
@@ -134,14 +130,8 @@ def scan(case: Case, names: Sequence[str], path: Path) -> str:
 
 
 def finished(path: Path) -> list[dict[str, Any]]:
-    """Results, the last of each branch; a line cut off by an interruption is dropped."""
-    found = {}
-    for line in path.read_text().splitlines() if path.is_file() else []:
-        try:
-            row = json.loads(line)
-        except json.JSONDecodeError:
-            continue
-        found[row["key"], row["threshold"], row["factor"]] = row
+    """Results, the last of each branch."""
+    found = {(row["key"], row["threshold"], row["factor"]): row for row in rows_of(path)}
     return list(found.values())
 
 

@@ -74,7 +74,7 @@ def clock_seconds(parts: tuple[Any, ...]) -> float:
 
 
 def days_since_1970(key: tuple[str, str, str], order: str, where: str, strict: bool = True) -> float:
-    """Days since 1970 of a date's three parts in an order; raises `InputError` for what is no date, or gives NaN."""
+    """Days since 1970 of a date's three parts in an order; NaN for what is no date, or `InputError` where `strict`."""
     named = dict(zip(order, key, strict=True))
     month = named["m"]
     number = int(month) if month.isdecimal() else _MONTHS.get(month[:3].lower(), 0)

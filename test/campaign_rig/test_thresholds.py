@@ -48,7 +48,9 @@ assert LIMITS.left_over == 0.15 and "__getattribute__" not in vars(type(LIMITS))
 def test_each_branch_goes_on_with_its_own_threshold_and_what_was_done_before(tmp_path):
     told = tmp_path / "told.jsonl"
     subprocess.run([sys.executable, "-c", SEARCH, str(told)], check=True, capture_output=True, timeout=120)
-    rows = {(name, factor): (here, result) for here, name, factor, result in map(json.loads, told.open())}
+    lines = [json.loads(line) for line in told.open()]
+    rows = {(name, factor): (here, result) for here, name, factor, result in lines}
+    assert len(lines) == len(rows)  # what branched off branches no further
     as_frozen = [0.15, 10.0, 0.15, 4, 2]
     assert rows == {
         ("left_over", 0.5): (False, [0.075, 10.0, 0.075, 4, 2]), ("left_over", 2.0): (False, [0.3, 10.0, 0.3, 4, 2]),
@@ -137,6 +139,7 @@ def test_the_table_says_what_changes_and_where_and_names_what_does_not(tmp_path)
     assert text.endswith("with an error: 0.")
     begun = [_row("law/x*1/drawn/3", name, 0.5, "unexplained") for name in ("left_over", "outdone")]
     assert whole([*rows, *begun]) == rows  # what was not searched as frozen is compared with nothing
+    assert whole([*rows, *begun, _row("law/x*1/drawn/3", *FROZEN, "unexplained")]) == rows  # nor what lacks branches
     out = tmp_path / "rows.jsonl"
     out.write_text("\n".join(json.dumps(row) for row in [rows[0], rows[0] | {"verdict": "again"}]) + '\n{"key": "cut')
     assert [row["verdict"] for row in finished(out)] == ["again"]

@@ -104,6 +104,7 @@ def test_topics_below_the_speeds_namespace_are_the_winchs_and_a_remapped_one_is_
         ({"winch/hook_load": ""}, ["topic '' has no message"]),
         ({"winch/main/elbow": "/load_cell"}, ["'winch/main/elbow' is no topic"]),
         ({"winch/a/b/pressure_a": "/load_cell"}, ["'winch/a/b/pressure_a' is no topic"]),
+        ({"winch/a/pressure_a/b": "/load_cell"}, ["'winch/a/pressure_a/b' is no topic"]),
         ({"winch/wire_out": "/x", SPEED: "/y"}, ["topic '/x' has no message", "topic '/y' has no message"]),
     ],
 )

@@ -171,19 +171,20 @@ def table(rows: Sequence[dict[str, Any]]) -> str:
     for row in rows:
         branches.setdefault((row["threshold"], row["factor"]), []).append(row)
     lines = [
-        "| threshold | times | " + " | ".join(name for name, _, _ in COUNTED) + " | other than as frozen |",
+        "| threshold | times | other than as frozen | " + " | ".join(name for name, _, _ in COUNTED) + " |",
         "|---|---|" + "---|" * (len(COUNTED) + 1),
-        f"| **as frozen** | 1 | {' | '.join(_counts(list(frozen.values())))} | |",
+        f"| **as frozen** | 1 | | {' | '.join(_counts(list(frozen.values())))} |",
     ]
     same: list[tuple[str, float]] = []
     errors = 0
     for (name, factor), own in sorted(branches.items()):
         if not name:
             continue
-        differ = [_said(row) for row in own if _outcome(row) != _outcome(frozen[row["key"]])]
+        differ = Counter(_said(row) for row in own if _outcome(row) != _outcome(frozen[row["key"]]))
         errors += sum("error" in row for row in own)
         if differ:
-            lines.append(f"| `{name}` | {factor:g} | {' | '.join(_counts(own))} | {'; '.join(differ)} |")
+            said = "; ".join(f"{count}× {each}" if count > 1 else each for each, count in differ.items())
+            lines.append(f"| `{name}` | {factor:g} | {said} | {' | '.join(_counts(own))} |")
         else:
             same.append((name, factor))
     both = [f"`{name}`" for name, factor in same if factor == FACTORS[0] and (name, FACTORS[1]) in same]

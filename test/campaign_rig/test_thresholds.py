@@ -130,10 +130,12 @@ def test_the_table_says_what_changes_and_where_and_names_what_does_not(tmp_path)
     ]  # fmt: skip
     text = table(rows)
     lines = {line.split(" | ")[0].strip("| `"): line for line in text.splitlines() if line.startswith("| ")}
-    assert lines["**as frozen**"].startswith("| **as frozen** | 1 | 0 of 1 | 0 of 0 | 1 of 1 | 0 of 0 | 0 of 2 |")
-    assert "| 0.5 | 1 of 1 | " in lines["left_over"]
-    assert lines["left_over"].endswith("| a null: `unexplained` |")
-    assert lines["outdone"].endswith("| wear_drift:catalogue: `missing_effect` brake_drag |")
+    assert lines["**as frozen**"].startswith("| **as frozen** | 1 | | 0 of 1 | 0 of 0 | 1 of 1 | 0 of 0 | 0 of 2 |")
+    assert "| 0.5 | a null: `unexplained` | 1 of 1 | " in lines["left_over"]
+    assert "| 2 | wear_drift:catalogue: `missing_effect` brake_drag | 0 of 1 |" in lines["outdone"]
+    assert "| 0.5 | 2× a null: `unexplained` | 2 of 2 |" in table(
+        [{**row, "key": f"{null}{part}"} for part in ("", "0") for row in rows if row["key"] == null]
+    )
     assert "No verdict and no name changes with 1, halved or doubled: `never_noise`." in text
     assert "\nNor with `left_over` × 2.\n" in text
     assert text.endswith("with an error: 0.")

@@ -84,6 +84,10 @@ def edited(change):
             lambda d: d["parameters"]["K4"].update(std=-1),
             "model.yaml: parameters: K4: std must be 0 or above .*found -1",
         ),
+        (
+            lambda d: d["parameters"]["K4"].update(std=1e308),
+            r"model.yaml: parameters: K4: std must be 1e\+150 N\*m or less, found 1e\+308$",
+        ),
         (lambda d: d["parameters"]["K4"].update(std=float("nan")), "K4: std must be a finite number"),
         (lambda d: d["parameters"]["K4"].update(std=float("inf")), "K4: std must be a finite number"),
         (lambda d: d["parameters"]["K4"].pop("std"), "K4 lacks 'std'"),

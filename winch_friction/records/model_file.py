@@ -18,6 +18,7 @@ from winch_friction.records.schemas import with_all_problems
 from winch_friction.records.strict_yaml import Section, expect_kind, finite, parse_yaml, read_yaml, shipped, spread
 
 SCHEMA = "winch_friction.model/1"
+LARGEST_STD = 1e150  # SI: of two, the product is a covariance, and no number of a computer from 1.8e308 on
 SYMMETRIC = 1e-6  # what a correlation may miss by that was written with six digits or more
 
 
@@ -108,11 +109,19 @@ class _Entry:
         factor = factor_to_si(str(section.need("unit")), parameter.unit, section.where)
         self.name, self.factor, self.unit = parameter.name, factor, f" {parameter.unit}".removesuffix(" 1")
         self.value = section.number("value") * factor
-        self.std = spread(section) * factor if "std" in section else None
+        self.std = self._std(section)
         lower, upper = section.get("lower"), section.get("upper")
         self.bounds = self._bounds(parameter, lower, upper, section.where)
         self._check_value(parameter, section.where)
         section.close()
+
+    def _std(self, section: Section) -> float | None:
+        if "std" not in section:
+            return None
+        std = spread(section) * self.factor
+        if std > LARGEST_STD:
+            raise InputError(f"{section.where}: std must be {LARGEST_STD:.1g}{self.unit} or less, found {std:.4g}")
+        return std
 
     def _check_value(self, parameter: Parameter, where: str) -> None:
         low, high = self.bounds or (parameter.lower, parameter.upper)

@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 from winch_friction.discrepancy.preparation.grid import (
-    FASTEST_PERIOD,
     digit_of,
     dilated,
     lagged,
@@ -57,14 +56,39 @@ def test_the_noise_of_a_record_is_that_of_a_sample_whatever_it_follows():
     assert noise_level(values) == pytest.approx(0.4, rel=0.1)
 
 
-def test_a_long_and_fast_record_becomes_one_of_hundredths():
-    count = 60_000 + 4
-    run = Run("r", {"time": 1e-3 * np.arange(count), "motor_speed": np.arange(float(count))})
-    slow = thinned(run)
-    assert np.median(np.diff(slow.time)) == pytest.approx(FASTEST_PERIOD)
-    assert slow.columns["motor_speed"][:2] == pytest.approx([4.5, 14.5])
-    short = Run("r", {name: values[: 60_000 - 1] for name, values in run.columns.items()})
-    assert thinned(short) is short
+def _of(count, period, name="r"):
+    return Run(name, {"time": period * np.arange(count), "motor_speed": np.arange(float(count))})
+
+
+def test_a_long_and_fast_record_becomes_one_of_eightieths():
+    run = _of(60_000 + 4, 1e-3)
+    (slow,) = thinned([run])
+    assert np.median(np.diff(slow.time)) == pytest.approx(0.012)
+    assert slow.columns["motor_speed"][:2] == pytest.approx([5.5, 17.5])
+    assert len(slow) == 60_004 // 12  # what fills no mean is left out
+    short = _of(60_000 - 1, 1e-3)
+    assert thinned([short])[0] is short
+
+
+@pytest.mark.parametrize(
+    ("period", "of"), [(1 / 50, 1), (1 / 159, 1), (1 / 161, 2), (6e-3, 2), (1 / 200, 2), (1 / 250, 3)]
+)
+def test_many_fast_records_together_are_means_over_an_eightieth_of_a_second_at_most(period, of):
+    runs = [_of(30_000, period, f"r{k}") for k in range(10)]
+    assert [len(run) for run in thinned(runs)] == [30_000 // of] * 10
+    fewer = [*runs[:9], _of(30_000 - 1, period, "r9")]
+    assert all(a is b for a, b in zip(thinned(fewer), fewer, strict=True))
+
+
+def test_among_many_a_slow_record_an_empty_one_and_one_without_a_clock_stay_as_they_are():
+    one, none = _of(1, 1e-3, "one"), _of(0, 1e-3, "none")
+    back = Run("back", {"time": np.array([0.0, 1e-3, 1e-3]), "motor_speed": np.zeros(3)})
+    slow, lost = (
+        _of(500, 0.02, "slow"),
+        Run("lost", {"time": np.array([0.0, np.nan, 2e-3]), "motor_speed": np.zeros(3)}),
+    )
+    runs = [_of(300_000, 1e-3, "fast"), slow, one, none, back, lost]
+    assert [own is run for own, run in zip(thinned(runs), runs, strict=True)] == [False, True, True, True, True, True]
 
 
 @pytest.mark.parametrize(("seconds", "samples"), [(0.3, 15), (0.32, 17), (0.01, 5), (0.1, 5)])

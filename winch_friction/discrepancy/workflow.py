@@ -64,7 +64,7 @@ def find_gap(runs: Sequence[Run], crane: Crane, model: FrictionModel, options: G
     # by name: which runs are locked must not hang on the order in which they are given
     parts, holes = apart(sorted(runs, key=lambda run: run.name))
     parts, found = without_broken(parts)
-    every = [thinned(run) for run in parts]
+    every = thinned(parts)
     if any(name.endswith(SIMULATED) for run in every for name in run.columns):
         every = against_simulations(every, model, crane)
     runs, notes = adequacy.long_enough(every)

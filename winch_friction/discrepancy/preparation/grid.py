@@ -19,7 +19,8 @@ from winch_friction.physics.signals import WORTH_SAYING, FloatArray, Run, layer_
 from winch_friction.physics.winch import Crane
 
 MIN_SAMPLES = 10  # below it not even a speed can be smoothed
-LONG_RECORD, FASTEST_PERIOD = 60_000, 0.01  # samples; s
+# samples of one record, and of all that are searched together (twelve of 200 s at 100 Hz are 240 000); s, of 80 Hz
+LONG_RECORD, MANY_SAMPLES, FASTEST_PERIOD = 60_000, 300_000, 0.0125
 MOST_EMPTY = 5_000_000  # samples of a grid most of which nobody logged; a day of 50 Hz
 HOLE = 5.0  # sampling periods without a sample
 # the standard deviation of a normal variable over the median of its magnitude, and that of third differences of white
@@ -168,11 +169,16 @@ def beside_climbs(runs: Sequence[Run], crane: Crane) -> tuple[list[Run], list[st
     return kept, notes
 
 
-def thinned(run: Run) -> Run:
-    """A long and very fast record as means over hundredths of a second: friction knows nothing faster."""
-    count = len(run)
-    steps = np.diff(run.time)
-    if count < LONG_RECORD or not np.isfinite(steps).all() or steps.min() <= 0.0:
+def thinned(runs: Sequence[Run]) -> list[Run]:
+    """Fast records, where one is long or all together are many samples, as means over an eightieth of a second at most:
+    friction knows nothing faster."""
+    many = sum(map(len, runs)) >= MANY_SAMPLES
+    return [_thinned(run) if many or len(run) >= LONG_RECORD else run for run in runs]
+
+
+def _thinned(run: Run) -> Run:
+    count, steps = len(run), np.diff(run.time)
+    if not count > 1 or not np.isfinite(steps).all() or steps.min() <= 0.0:
         return run
     factor = int(FASTEST_PERIOD / float(np.median(steps)) + 1e-6)
     if factor < 2:

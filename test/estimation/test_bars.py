@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from winch_friction.estimation import EstimatorConfig, FrictionEstimator
+from winch_friction.estimation.parameters import ScaledParameters
 from winch_friction.physics.channels import RPM
 from winch_friction.physics.winch.crane import run_drum_torque
 from winch_friction.physics.winch.operating_point import run_operating_points
@@ -89,3 +90,31 @@ def test_emps_in_one_pass(shared_data, factor):
     explained = crane.inertia * acceleration + np.asarray(each.model().torque(x), float)
     residual, whole = (decimate(column, 10, zero_phase=True)[5:-5] for column in (force - explained, force))
     assert np.linalg.norm(residual) / np.linalg.norm(whole) < 0.045
+
+
+@pytest.mark.parametrize("ranges", [1e4, 1e140])
+def test_a_seed_whose_sigma_is_far_beyond_its_range_is_taken_as_one_that_nothing_is_known_of(crane, seed, ranges):
+    """With these sigmas themselves the covariance was none after a minute, and the model could not be told."""
+    width = np.array([np.diff(seed.bounds_of(name))[0] for name in seed.parameter_names])
+    correlation = seed.covariance / np.outer(seed.std, seed.std)
+
+    def of(times):
+        return seed.with_covariance(correlation * np.outer(times * width, times * width))
+
+    sea = {"kind": "regular", "amplitude": 1.5, "period": 10.0}
+    case = load_scenario("ahc_55t_215").override({"drive": "secondary", "load": 100e3, "sea": sea, "duration": 60.0})
+    run = simulate(case, crane, seed, seed=201).run
+    far, ten = (FrictionEstimator(crane, of(times)) for times in (ranges, 10.0))
+    for sample in run.samples():
+        far.step(sample)
+        ten.step(sample)
+    assert far.model().values == pytest.approx(ten.model().values, rel=1e-6)
+    assert far.model().std == pytest.approx(ten.model().std, rel=1e-3)
+
+
+def test_a_sigma_of_ten_ranges_is_taken_as_it_is_and_of_more_as_much(seed):
+    width = np.array([np.diff(seed.bounds_of(name))[0] for name in seed.parameter_names])
+    for times, taken in ((9.9, 9.9), (10.1, 10.0)):
+        parts = ScaledParameters(seed.with_covariance(np.diag((times * width) ** 2)), EstimatorConfig())
+        assert parts.scale == pytest.approx(taken * width, rel=1e-12)
+        assert parts.seed_prior == pytest.approx(np.eye(len(width)), abs=1e-12)

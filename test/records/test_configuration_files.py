@@ -85,8 +85,8 @@ def edited(change):
             "model.yaml: parameters: K4: std must be 0 or above .*found -1",
         ),
         (
-            lambda d: d["parameters"]["K4"].update(std=2000.1),
-            r"model.yaml: parameters: K4: std must be 2000 N\*m or less \(10 times its range\), found 2000.1$",
+            lambda d: d["parameters"]["K4"].update(std=1e308),
+            r"model.yaml: parameters: K4: std must be 1e\+150 N\*m or less, found 1e\+308$",
         ),
         (lambda d: d["parameters"]["K4"].update(std=float("nan")), "K4: std must be a finite number"),
         (lambda d: d["parameters"]["K4"].update(std=float("inf")), "K4: std must be a finite number"),
@@ -137,21 +137,9 @@ def test_a_wrong_model_is_one_clear_line(change, message):
     assert "\n" not in str(caught.value)
 
 
-@pytest.mark.parametrize(("name", "largest", "own"), [("K4", 2000.0, {"lower": 13.0, "upper": 15.0}),
-                                                      ("K4", 4000.0, {"upper": 400.0})])  # fmt: skip
-def test_a_deviation_may_be_ten_times_the_wider_of_its_own_range_and_its_terms(name, largest, own):
-    model = model_from_text(edited(lambda d: d["parameters"][name].update(std=largest, **own)), "model.yaml")
-    assert model.std[model.parameter_names.index(name)] == pytest.approx(largest, rel=1e-12)
-    with pytest.raises(InputError, match=f"{name}: std must be {largest:g} N"):
-        model_from_text(edited(lambda d: d["parameters"][name].update(std=1.001 * largest, **own)), "model.yaml")
-
-
-def test_of_a_range_without_an_end_a_deviation_may_be_whatever_has_a_square():
-    model_from_text(edited(lambda d: d["parameters"]["K4"].update(std=1e149, upper=1e200)), "model.yaml")
-    with pytest.raises(
-        InputError, match=r"K4: std must be 1e\+150 N\*m or less \(of more there is no cov.*found 1e\+308$"
-    ):
-        model_from_text(edited(lambda d: d["parameters"]["K4"].update(std=1e308, upper=1e200)), "model.yaml")
+def test_a_deviation_far_beyond_its_range_is_read_as_an_identification_may_write_it():
+    model = model_from_text(edited(lambda d: d["parameters"]["K4"].update(std=1e149)), "model.yaml")
+    assert model.std[model.parameter_names.index("K4")] == pytest.approx(1e149, rel=1e-12)
 
 
 @pytest.mark.parametrize("text", ["{", "- 1", "", "\t x: 1", "a: *b"])

@@ -13,12 +13,16 @@ from winch_friction.physics.signals import FloatArray
 
 # of a direction, in squared sigmas of the seed: where a fit saw nothing, or a file's digits end, it is zero or below
 LEAST_VARIANCE = 1e-9
+# a deviation as wide as its range says already that nothing is known; with a thousand times as much a filter of ten
+# parameters loses the digits that keep its covariance one (replayed: sound with 100, refused with 1000)
+WIDEST_STD = 10.0  # ranges
 
 
 class ScaledParameters:
     """theta = seed + sigma * phi; the filter carries phi of the parameters whose seed has a sigma.
 
-    The seed's covariance becomes the prior of phi, so that directions that the data do not excite stay at the seed.
+    The seed's covariance becomes the prior of phi, so that directions that the data do not excite stay at the seed; of
+    a sigma far beyond the parameter's range it takes as much as says that nothing is known, with the correlations.
     """
 
     def __init__(self, seed: FrictionModel, config: EstimatorConfig) -> None:
@@ -26,7 +30,8 @@ class ScaledParameters:
         self.center = np.array(seed.values)
         std = seed.std if seed.covariance is not None else config.default_std * np.abs(self.center)
         self.free = np.flatnonzero(std > 0.0)
-        self.scale = std[self.free]
+        ranges = np.array([seed.bounds_of(name) for name in seed.parameter_names]).reshape(-1, 2)
+        self.scale = np.minimum(std, WIDEST_STD * (ranges[:, 1] - ranges[:, 0]))[self.free]
         self._centers, self._free, self._scales = self.center.tolist(), self.free.tolist(), self.scale.tolist()
         self._forgetting_time = config.forgetting_time
         self.seed_prior = self._prior(seed)
@@ -49,7 +54,8 @@ class ScaledParameters:
     def _prior(self, seed: FrictionModel) -> FloatArray:
         if seed.covariance is None:
             return np.eye(self.size)
-        scaled = seed.covariance[np.ix_(self.free, self.free)] / np.outer(self.scale, self.scale)
+        own = seed.std[self.free]
+        scaled = seed.covariance[np.ix_(self.free, self.free)] / np.outer(own, own)
         scaled = 0.5 * (scaled + scaled.T)
         values, directions = np.linalg.eigh(scaled)
         if values.min(initial=LEAST_VARIANCE) >= LEAST_VARIANCE:

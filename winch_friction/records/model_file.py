@@ -19,9 +19,6 @@ from winch_friction.records.strict_yaml import Section, expect_kind, finite, par
 
 SCHEMA = "winch_friction.model/1"
 LARGEST_STD = 1e150  # SI: of two, the product is a covariance, and no number of a computer from 1.8e308 on
-# a deviation as wide as its parameter's range says already that nothing is known; with a thousand times as much an
-# estimate of ten parameters loses the digits that keep its covariance one (replayed: sound with 100, refused with 1000)
-WIDEST_STD = 10.0  # ranges
 SYMMETRIC = 1e-6  # what a correlation may miss by that was written with six digits or more
 
 
@@ -114,21 +111,16 @@ class _Entry:
         self.value = section.number("value") * factor
         lower, upper = section.get("lower"), section.get("upper")
         self.bounds = self._bounds(parameter, lower, upper, section.where)
-        self.std = self._std(section, parameter)
+        self.std = self._std(section)
         self._check_value(parameter, section.where)
         section.close()
 
-    def _std(self, section: Section, parameter: Parameter) -> float | None:
+    def _std(self, section: Section) -> float | None:
         if "std" not in section:
             return None
         std = spread(section) * self.factor
-        low, high = self.bounds or (parameter.lower, parameter.upper)
-        largest = WIDEST_STD * max(high - low, parameter.upper - parameter.lower)
-        if std > min(largest, LARGEST_STD):
-            why = f"{WIDEST_STD:g} times its range" if largest < LARGEST_STD else "of more there is no covariance"
-            raise InputError(
-                f"{section.where}: std must be {min(largest, LARGEST_STD):g}{self.unit} or less ({why}), found {std:g}"
-            )
+        if std > LARGEST_STD:
+            raise InputError(f"{section.where}: std must be {LARGEST_STD:g}{self.unit} or less, found {std:g}")
         return std
 
     def _check_value(self, parameter: Parameter, where: str) -> None:

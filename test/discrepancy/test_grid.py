@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from winch_friction.discrepancy import adequacy
 from winch_friction.discrepancy.preparation.grid import (
     digit_of,
     dilated,
@@ -14,6 +15,7 @@ from winch_friction.discrepancy.preparation.grid import (
     thinned,
     uniform,
 )
+from winch_friction.discrepancy.workflow import find_gap
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.signals import Run
 
@@ -89,6 +91,19 @@ def test_among_many_a_slow_record_an_empty_one_and_one_without_a_clock_stay_as_t
     )
     runs = [_of(300_000, 1e-3, "fast"), slow, one, none, back, lost]
     assert [own is run for own, run in zip(thinned(runs), runs, strict=True)] == [False, True, True, True, True, True]
+
+
+def test_a_search_reads_many_fast_records_as_their_means(monkeypatch, crane_150t, crane2_model):
+    class Read(Exception):
+        pass
+
+    def told(runs):
+        raise Read([len(run) for run in runs])
+
+    monkeypatch.setattr(adequacy, "long_enough", told)  # the first that reads them
+    with pytest.raises(Read) as caught:
+        find_gap([_of(30_000, 6e-3, f"r{k:02d}") for k in range(10)], crane_150t, crane2_model)
+    assert caught.value.args == ([15_000] * 10,)
 
 
 @pytest.mark.parametrize(("seconds", "samples"), [(0.3, 15), (0.32, 17), (0.01, 5), (0.1, 5)])

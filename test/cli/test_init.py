@@ -317,3 +317,23 @@ def test_a_torque_limit_goes_with_the_number_of_motors_and_their_size(tmp_path, 
         limits.append(load_crane(f"{motors}_{displacement}.yaml").absolute_torque_limit)
     own = shipped * 160.0 / 215.0 / 11.0
     assert limits == pytest.approx([5.0 * own, 10.0 * own, 2.5 * own], rel=0.01)
+
+
+def test_the_sets_are_simulated_for_an_own_crane(own, monkeypatch, capsys):
+    """They were the 150 t crane's alone: its sixth layer, its motors' displacement."""
+    from winch_friction.cli import simulate
+
+    asked = []
+    monkeypatch.setattr(simulate, "_simulate_to", lambda path, chosen, *_: asked.append(chosen) or {"run": str(path)})
+    given = ["--crane", "crane_50t.yaml", "--model", "seed_crane_50t.yaml"]
+    assert run(["simulate", "gap_campaign", *given, "--out", "runs"]) == 2
+    assert "plant 'winch_150t' is of crane 'crane_150t', not of 'crane_50t'" in capsys.readouterr().err
+    assert run(["simulate", "gap_campaign", *given, "--plant", "plant_crane_50t.yaml", "--out", "runs"]) == 0
+    assert len(asked) == 12
+    assert {each.wire_layer for each in asked} == {3, 4, 5}
+    assert max(each.displacement for each in asked) == pytest.approx(load_crane("crane_50t.yaml").max_displacement)
+    without = Path("crane_50t.yaml").read_text().replace("  active: 2\n", "").replace("  passive: 3\n", "")
+    Path("crane_50t.yaml").write_text(without)
+    assert run(["simulate", "gap_campaign", *given, "--plant", "plant_crane_50t.yaml", "--out", "runs"]) == 0
+    assert "4 of 12 runs left out: 'crane_50t' has motor groups main" in capsys.readouterr().err
+    assert len(asked) == 20

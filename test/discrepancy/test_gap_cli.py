@@ -12,14 +12,18 @@ import numpy as np
 import pytest
 from gap_rig import runs_with
 
+from winch_friction import simulation
 from winch_friction.cli.gap_output import _parameters, _unexplained
 from winch_friction.cli.main import run as winch_friction
 from winch_friction.discrepancy import workflow
 from winch_friction.physics.signals import Run
+from winch_friction.physics.winch.crane import Drive
+from winch_friction.records import crane_file
 from winch_friction.records.crane_file import load_crane
 from winch_friction.records.model_file import load_model
 from winch_friction.records.runs import write_run
 from winch_friction.simulation import load_scenario, simulate
+from winch_friction.simulation.plant_file import load_plant
 
 OWN_EFFECT = """
 from winch_friction.physics.friction import Parameter, Scope, Term, register
@@ -146,6 +150,39 @@ def test_blind_trials_open_the_seal_only_afterwards(tmp_path, capsys, monkeypatc
     assert json.loads(seal.with_name("gap.json").read_text())["verdict"] == trial["verdict"] == "ambiguous"
     assert trial["found"] == ["tare_load", "churning"]
     assert told["right"] == 1
+
+
+def test_blind_trials_of_another_crane_are_its_own(tmp_path, capsys, monkeypatch):
+    """Simulated on a plant scaled from the shipped one, which is kept; nothing is promised of a crane without one."""
+    monkeypatch.chdir(tmp_path)
+    own = ["--name", "own", "--load", "50", "--motors", "5", "--displacement", "160", "--gear-ratio", "180",
+           "--radius", "0.6", "--layers", "5", "--active", "2", "--wire", "44", "--out", "own.yaml"]  # fmt: skip
+    assert winch_friction(["init", "crane", *own]) == 0
+    assert winch_friction(["init", "model", "--crane", "own.yaml", "--out", "seed.yaml"]) == 0
+    searched, asked = [], []
+
+    def simulated(scenario, *_):
+        asked.append(scenario)
+        return SimpleNamespace(run=scenario.name)
+
+    def nothing(runs, *_):
+        searched.append(runs)
+        return SimpleNamespace(content=lambda: {"verdict": "nothing_missing", "effects": []})
+
+    monkeypatch.setattr(simulation, "simulate", simulated)
+    monkeypatch.setattr(workflow, "find_gap", nothing)
+    blind = ["gap", "--blind", "1", "--crane", "own.yaml", "--model", "seed.yaml", "--out", "blind"]
+    assert winch_friction(blind) == 0
+    assert len(searched[0]) == 12
+    plant = tmp_path / "blind" / "plant_own.yaml"
+    assert {each.plant for each in asked} == {str(plant.relative_to(tmp_path))}
+    assert load_plant(plant).crane == "own"
+    assert "plant_own.yaml, scaled from winch_150t" in capsys.readouterr().err
+    other = replace(load_crane("own.yaml"), drive=Drive("electric"))
+    monkeypatch.setattr(crane_file, "load_crane", lambda name: other)
+    assert winch_friction(["gap", "--blind", "1", "--crane", "own.yaml", "--model", "seed.yaml", "--out", "other"]) == 2
+    assert "scenarios simulate hydraulic winches" in capsys.readouterr().err
+    assert not (tmp_path / "other").exists()
 
 
 def test_runs_of_another_crane_without_a_word_of_it_are_refused_for_that(tmp_path, capsys):

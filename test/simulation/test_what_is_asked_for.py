@@ -10,10 +10,12 @@ from winch_friction.physics.channels import BAR, CM3_PER_REV, GRAVITY
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.friction.correction import Correction
 from winch_friction.physics.signals import GroupSample, Run, Sample
+from winch_friction.physics.winch.crane import Drive, Drum
+from winch_friction.records.crane_file import load_crane
 from winch_friction.records.strict_yaml import config_directory, read_yaml
 from winch_friction.simulation import fmu, load_scenario
 from winch_friction.simulation.assembly import plant_record, prescribed_motion
-from winch_friction.simulation.campaigns import CAMPAIGNS, gap_campaign, paper_tests
+from winch_friction.simulation.campaigns import CAMPAIGNS, fitted, gap_campaign, paper_tests
 from winch_friction.simulation.model_errors import put_errors
 from winch_friction.simulation.motion.measured import load_heave
 from winch_friction.simulation.plant_file import PlantFile, load_plant, refuse_other_plant
@@ -69,6 +71,67 @@ def test_the_gap_campaigns_runs_are_drawn_around_their_plan():
         assert low <= min(drawn[name]) < low + 0.1 * spread, name
         assert high - 0.1 * spread < max(drawn[name]) <= high + 1e-9, name
         assert np.mean(drawn[name]) == pytest.approx(0.5 * (low + high), abs=0.12 * spread), name
+
+
+def test_the_sets_are_planned_for_the_150_t_crane_and_left_as_they_are_for_it():
+    crane, plant = load_crane("crane_150t"), load_plant("winch_150t")
+    for scenarios in (gap_campaign(5), paper_tests()):
+        assert fitted(scenarios, crane, plant) == scenarios
+
+
+def smaller(**changes):
+    """A crane of half the motors, whose motors and drum are half as large: half the rope's speed, and less
+    gear."""
+    first = load_crane("crane_150t")
+    own = {"name": "own", "groups": {"main": 6, "active": 2, "passive": 4}, "drum": Drum((0.4, 0.5, 0.568)),
+           "max_displacement": 0.5 * first.max_displacement, "rated_load": 0.0, "gear_ratio": 0.8 * first.gear_ratio}  # fmt: skip
+    return replace(first, **{**own, **changes})
+
+
+def test_another_cranes_runs_are_the_same_shares_of_what_it_can():
+    plant = load_plant("winch_150t").copy(update={"crane": "own"})
+    pump = plant.pump.copy(update={"flow": plant.pump.flow / 6.0})
+    slow = plant.copy(update={"pump": pump})
+    for planned, own in zip(gap_campaign(2), fitted(gap_campaign(2), smaller(), slow), strict=True):
+        assert own.displacement == pytest.approx(0.5 * planned.displacement)
+        motors = 6 / 11  # of either mode
+        assert own.load == pytest.approx(planned.load * motors * 0.5 * 0.8 / 0.5)
+        assert own.wire_layer == planned.wire_layer - 3
+        assert (own.name, own.duration, own.profile) == (planned.name, planned.duration, planned.profile)
+        if own.mode == "ahc":
+            height = "amplitude" if own.sea.kind == "regular" else "significant_height"
+            flow_per_motor = (1 / 6) / (2 / 3 * 0.5)
+            assert getattr(own.sea, height) == pytest.approx(getattr(planned.sea, height) * flow_per_motor * 0.5 / 0.8)
+
+
+def test_no_run_has_more_than_its_share_of_the_rated_load():
+    plant = load_plant("winch_150t").copy(update={"crane": ""})
+    for rated, share in ((60e3, 0.4), (140e3, 0.8 * 6 / 11)):
+        own = fitted(gap_campaign(2), smaller(rated_load=rated), plant)
+        assert [run.load for run in own] == pytest.approx([share * run.load for run in gap_campaign(2)])
+
+
+def test_a_faster_winch_gets_no_higher_sea_and_a_drum_of_few_layers_its_first():
+    fast = load_plant("winch_150t").copy(update={"crane": ""})
+    own = fitted(gap_campaign(2), smaller(drum=Drum((0.568,))), fast)
+    assert [run.sea for run in own] == [run.sea for run in gap_campaign(2)]
+    assert {run.wire_layer for run in own} == {1}
+
+
+def test_runs_without_motors_for_them_are_left_out():
+    plant = load_plant("winch_150t").copy(update={"crane": ""})
+    assert [run.name for run in fitted(gap_campaign(2), smaller(groups={"main": 3}), plant)] == [
+        run.name for run in gap_campaign(2)[:8]
+    ]
+    with pytest.raises(InputError, match="'own' has motor groups port: a run needs main, or active and passive"):
+        fitted(gap_campaign(2), smaller(groups={"port": 3}), plant)
+
+
+def test_a_set_needs_a_plant_of_the_crane():
+    with pytest.raises(InputError, match="plant 'winch_150t' is of crane 'crane_150t', not of 'own'"):
+        fitted(gap_campaign(2), smaller(), load_plant("winch_150t"))
+    with pytest.raises(InputError, match="scenarios simulate hydraulic winches"):
+        fitted(gap_campaign(2), smaller(drive=Drive("electric")), load_plant("winch_150t"))
 
 
 # -- limits

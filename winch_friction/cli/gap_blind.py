@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from winch_friction.cli.console import show_json, show_table
-from winch_friction.cli.inputs import progress, refuse_existing
+from winch_friction.cli.inputs import progress, refuse_existing, show_warnings
 from winch_friction.physics.errors import InputError
 
 NOTHING = "nothing"  # drawn as well: a search that always finds something is worth nothing
@@ -24,8 +24,9 @@ def blind_trials(
         raise InputError(f"--blind {count}: give a number of trials, 1 or more")
     folders = [out / f"trial_{k + 1:02d}" for k in range(count)]
     refuse_existing(overwrite, *(folder / name for folder in folders for name in ("gap.json", "seal.json")))
+    plant = _plant_of(crane, out)
     rng = np.random.default_rng([seed, 271])
-    rows = [_trial(k, crane, model, folders[k], rng) for k in progress(range(count), "blind trials")]
+    rows = [_trial(k, crane, model, plant, folders[k], rng) for k in progress(range(count), "blind trials")]
     right = sum(row["right"] for row in rows)
     if as_json:
         show_json({"trials": rows, "right": right, "of": count})
@@ -38,7 +39,26 @@ def _text(value: Any) -> str:
     return ", ".join(value) if isinstance(value, list) else str(value)
 
 
-def _trial(number: int, crane: str, model: str, folder: Path, rng: np.random.Generator) -> dict[str, Any]:
+def _plant_of(crane: str, out: Path) -> str:
+    """The shipped plant of the crane that the runs are planned for; of any other one that is scaled from it, written
+    beside the trials."""
+    from winch_friction.cli.init_texts import plant_text
+    from winch_friction.records.atomic import write_text
+    from winch_friction.records.crane_file import load_crane
+    from winch_friction.simulation.campaigns import ITS_PLANT, PLANNED_FOR
+    from winch_friction.simulation.plant_file import refuse_others
+
+    winch = load_crane(crane)
+    refuse_others(winch)
+    if winch.name == PLANNED_FOR:
+        return ITS_PLANT
+    path = out / f"plant_{winch.name}.yaml"
+    write_text(path, plant_text(winch, path.stem))
+    show_warnings([f"simulated with {path}, scaled from {ITS_PLANT}"])
+    return str(path)
+
+
+def _trial(number: int, crane: str, model: str, plant: str, folder: Path, rng: np.random.Generator) -> dict[str, Any]:
     from winch_friction.discrepancy.answer import GapOptions
     from winch_friction.discrepancy.workflow import find_gap
     from winch_friction.records.atomic import write_text
@@ -49,7 +69,7 @@ def _trial(number: int, crane: str, model: str, folder: Path, rng: np.random.Gen
     secret = _draw(rng)
     sealed = json.dumps(secret, sort_keys=True)
     write_text(folder / "seal.sha256", hashlib.sha256(sealed.encode()).hexdigest() + "\n")
-    runs = _simulated(secret, winch, seed_model, int(rng.integers(1 << 30)))
+    runs = _simulated(secret, winch, seed_model, plant, int(rng.integers(1 << 30)))
     content = find_gap(runs, winch, seed_model, GapOptions(seed=number, plan=False)).content()
     write_text(folder / "gap.json", json.dumps(content, indent=2) + "\n")
     write_text(folder / "seal.json", sealed + "\n")
@@ -72,13 +92,15 @@ def _draw(rng: np.random.Generator) -> dict[str, Any]:
     return {"effect": name, "size": size, "salt": int(rng.integers(1 << 60))}
 
 
-def _simulated(secret: Mapping[str, Any], crane: Any, model: Any, seed: int) -> Sequence[Any]:
+def _simulated(secret: Mapping[str, Any], crane: Any, model: Any, plant: str, seed: int) -> Sequence[Any]:
     from winch_friction.simulation import simulate
-    from winch_friction.simulation.campaigns import gap_campaign
+    from winch_friction.simulation.campaigns import fitted, gap_campaign
+    from winch_friction.simulation.plant_file import load_plant
 
     truth = _true_model(model, np.random.default_rng([seed, 5]))
     hidden = [] if secret["effect"] == NOTHING else [(secret["effect"], secret["size"])]
-    return [simulate(s, crane, truth, seed + k, hidden).run for k, s in enumerate(gap_campaign(seed))]
+    planned = fitted([each.override({"plant": plant}) for each in gap_campaign(seed)], crane, load_plant(plant))
+    return [simulate(each, crane, truth, seed + k, hidden).run for k, each in enumerate(planned)]
 
 
 def _true_model(model: Any, rng: np.random.Generator) -> Any:

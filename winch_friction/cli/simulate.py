@@ -59,6 +59,7 @@ def command(
     """
     from winch_friction.cli.console import show_json, show_table
     from winch_friction.cli.inputs import machine_of, progress, refuse_unwritable, show_warnings
+    from winch_friction.simulation.campaigns import CAMPAIGNS
     from winch_friction.simulation.plant_file import load_plant, refuse_other_plant
 
     load_terms(terms_file)
@@ -82,6 +83,8 @@ def command(
     problems.say()
     if plant:
         plan = [(chosen.override({"plant": plant}), run_seed, path) for chosen, run_seed, path in plan]
+    if scenario in CAMPAIGNS:
+        plan = _of_crane(plan, winch)
     for chosen, _, _ in plan:
         refuse_other_plant(chosen, load_plant(chosen.plant), winch)
     rows: list[dict[str, Any]] = []
@@ -142,6 +145,22 @@ def _plan(name: str, seed: int, out: Path, kind: str) -> list[tuple[Any, int, Pa
         return [(s, 1000 * seed + k, out / f"{s.name}.{kind}") for k, s in enumerate(CAMPAIGNS[name](seed), 1)]
     scenario = load_scenario(name)
     return [(scenario, seed, refuse_unknown_kind(out) if out.suffix else out / f"{scenario.name}.{kind}")]
+
+
+def _of_crane(plan: list[tuple[Any, int, Path]], crane: Any) -> list[tuple[Any, int, Path]]:
+    """A set's plan, fitted to the crane; what the crane has no motors for is left out, and said."""
+    from winch_friction.cli.inputs import show_warnings
+    from winch_friction.simulation.campaigns import fitted
+    from winch_friction.simulation.plant_file import load_plant
+
+    own = {s.name: s for s in fitted([chosen for chosen, _, _ in plan], crane, load_plant(plan[0][0].plant))}
+    kept = [(own[chosen.name], seed, path) for chosen, seed, path in plan if chosen.name in own]
+    if len(kept) < len(plan):
+        there = ", ".join(crane.groups) or "none"
+        show_warnings(
+            [f"{len(plan) - len(kept)} of {len(plan)} runs left out: '{crane.name}' has motor groups {there}"]
+        )
+    return kept
 
 
 def _refuse_overwriting(paths: list[Path], overwrite: bool) -> None:

@@ -15,7 +15,7 @@ from winch_friction.simulation.motion.measured import MeasuredHeave, load_heave
 from winch_friction.simulation.motion.profile import plateau_points, profile_reference
 from winch_friction.simulation.motion.sea import Waves, fade, jonswap_sea, regular_wave
 from winch_friction.simulation.plant.parameters import PLANT, PLANT_FIELDS, record
-from winch_friction.simulation.plant_file import PlantFile
+from winch_friction.simulation.plant_file import PlantFile, refuse_others
 from winch_friction.simulation.scenario import Jonswap, Measured, Regular, Scenario
 
 WATER_DENSITY = 1025.0  # kg/m^3
@@ -112,10 +112,7 @@ def plant_record(scenario: Scenario, crane: Crane, plant: PlantFile) -> np.ndarr
 
 
 def _check(scenario: Scenario, crane: Crane) -> None:
-    if not crane.drive.hydraulic:
-        raise InputError(
-            f"crane '{crane.name}' has a drive of kind '{crane.drive.kind}'; scenarios simulate hydraulic winches"
-        )
+    refuse_others(crane)
     for value in (scenario.displacement, *(each for _, each in scenario.displacement_schedule)):
         if not 0.02 * crane.max_displacement <= value <= 1.001 * crane.max_displacement:
             raise InputError(

@@ -1,12 +1,18 @@
-"""Sets of scenarios: the tests of paper 2, and the campaign that the discrepancy workflow is measured with."""
+"""Sets of scenarios: the tests of paper 2, and the campaign that the discrepancy workflow is measured with. They are
+planned for the 150 t crane of paper 2; `fitted` makes them another crane's.
+"""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from winch_friction.physics.channels import CM3_PER_REV
-from winch_friction.simulation.scenario import Scenario, scenario_from_content
+from winch_friction.physics.errors import InputError
+from winch_friction.physics.winch.crane import Crane
+from winch_friction.simulation.plant_file import PlantFile, load_plant, refuse_others
+from winch_friction.simulation.scenario import Jonswap, Regular, Scenario, scenario_from_content
 
 # paper 2 Tables 2 and 5: test -> displacement per motor cm^3/rev, load t (the hook alone weighs about 2 t)
 PAPER_TESTS = {
@@ -108,6 +114,64 @@ def _circumstances(number: int, plan: _Cycle | _Compensation, generator: np.rand
 
 def _around(generator: np.random.Generator, share: float) -> float:
     return float(generator.uniform(1.0 - share, 1.0 + share))
+
+
+# -- the same plans for another crane
+PLANNED_FOR, ITS_PLANT = "crane_150t", "winch_150t"
+DRIVES = {"normal": ("main",), "ahc": ("active", "passive")}  # which groups turn the winch
+
+
+def fitted(scenarios: Sequence[Scenario], crane: Crane, plant: PlantFile) -> list[Scenario]:
+    """The scenarios of a set for a hydraulic crane and its plant: the same share of the motors' displacement, of the
+    load that they hold on the outer layer (of the rated load, where that is less) and of the pump's speed, as many
+    layers from the outer one. A sea that asks
+    more speed of this winch than of that one is as much lower; a higher one than planned nobody needs.
+
+    Runs in a mode of which the crane has no motors are left out. Of the crane that the sets are planned for, with its
+    plant, they come back as they are. Raises `InputError` for a crane that is not hydraulic, or not the plant's.
+    """
+    from winch_friction.records.crane_file import load_crane
+
+    refuse_others(crane, plant=plant)
+    first = load_crane(PLANNED_FOR)
+    own, speed = [each for each in scenarios if set(DRIVES[each.mode]) <= set(crane.groups)], 1.0
+    if not own:
+        there = ", ".join(crane.groups) or "none"
+        raise InputError(f"crane '{crane.name}' has motor groups {there}: a run needs main, or active and passive")
+    if "active" in crane.groups:
+        speed = min(_rope_speed(crane, plant) / _rope_speed(first, load_plant(ITS_PLANT)), 1.0)
+    return [_fitted(each, crane, first, speed) for each in own]
+
+
+def _fitted(scenario: Scenario, crane: Crane, planned: Crane, speed: float) -> Scenario:
+    layers = len(planned.drum.layer_radii) - len(crane.drum.layer_radii)
+    changes: dict[str, Any] = {
+        "displacement": scenario.displacement * (crane.max_displacement / planned.max_displacement),
+        "load": scenario.load * _load_share(crane, planned, scenario.mode),
+        "wire_layer": max(scenario.wire_layer - layers, 1),
+    }
+    if isinstance(scenario.sea, Regular):
+        changes["sea.amplitude"] = scenario.sea.amplitude * speed
+    if isinstance(scenario.sea, Jonswap):
+        changes["sea.significant_height"] = scenario.sea.significant_height * speed
+    return scenario.override(changes)
+
+
+def _load_share(crane: Crane, planned: Crane, mode: str) -> float:
+    held = _held(crane, mode) / _held(planned, mode)
+    return min(held, crane.rated_load / planned.rated_load) if crane.rated_load else held
+
+
+def _held(crane: Crane, mode: str) -> float:
+    """What the motors of a mode hold on the outer layer, per pressure, m^2."""
+    motors = sum(crane.groups[name] for name in DRIVES[mode])
+    return motors * crane.max_displacement * crane.gear_ratio / crane.drum.layer_radii[-1]
+
+
+def _rope_speed(crane: Crane, plant: PlantFile) -> float:
+    """Speed of the rope on the outer layer with the pump's whole flow in the active motors, m/s."""
+    active = crane.groups["active"] * crane.max_displacement
+    return plant.pump.flow / active * crane.drum.layer_radii[-1] / crane.gear_ratio
 
 
 CAMPAIGNS = {"paper_tests": lambda seed: paper_tests(), "gap_campaign": gap_campaign}

@@ -78,17 +78,23 @@ def load_plant(name: str | Path) -> PlantFile:
 
 def refuse_other_plant(scenario: Any, plant: PlantFile, crane: Crane) -> None:
     """Raise `InputError` where a scenario or a plant says that it is of another crane, or cannot hold its load."""
-    found = [
-        f"{kind} '{each.name}' is of crane '{each.crane}'"
-        for kind, each in (("scenario", scenario), ("plant", plant))
-        if each.crane and each.crane != crane.name
-    ]
-    if found:
+    refuse_others(crane, scenario=scenario, plant=plant)
+    _refuse_load(scenario, plant, crane)
+
+
+def refuse_others(crane: Crane, **named: Any) -> None:
+    """Raise `InputError` where the crane is not hydraulic, or one of these (by kind) says that it is of another."""
+    if not crane.drive.hydraulic:
         raise InputError(
-            f"{' and '.join(found)}, not of '{crane.name}': give that crane, or a plant of this one "
+            f"crane '{crane.name}' has a drive of kind '{crane.drive.kind}'; scenarios simulate hydraulic winches"
+        )
+    others = {kind: each for kind, each in named.items() if each.crane and each.crane != crane.name}
+    if others:
+        found = " and ".join(f"{kind} '{each.name}' is of crane '{each.crane}'" for kind, each in others.items())
+        raise InputError(
+            f"{found}, not of '{crane.name}': give that crane, or a plant of this one "
             "(winch-friction init plant --crane ...; simulate --plant)"
         )
-    _refuse_load(scenario, plant, crane)
 
 
 def _refuse_load(scenario: Any, plant: PlantFile, crane: Crane) -> None:

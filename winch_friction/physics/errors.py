@@ -4,7 +4,8 @@ Settings are frozen dataclasses whose fields carry their own limits; built from 
 """
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import MISSING, Field, dataclass, field, fields
 from difflib import get_close_matches
 from types import TracebackType
@@ -27,6 +28,16 @@ class InputError(ValueError):
     def __init__(self, *problems: str) -> None:
         self.problems = tuple(" ".join(each.split()) for each in problems)
         super().__init__(" | ".join(self.problems))
+
+
+@contextmanager
+def said_of(path: Any, name: str) -> Iterator[None]:
+    """What is refused of a `name` is said of its `path`: a run is its file's name, and there are more folders."""
+    try:
+        yield
+    except InputError as refused:
+        rest = [(each, each.removeprefix(f"{name}:")) for each in refused.problems]
+        raise InputError(*(f"{path}:{text}" if text != each else each for each, text in rest)) from None
 
 
 class Problems:

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from winch_friction.physics.channels import GROUP_CHANNELS, SLOW_INPUTS
-from winch_friction.physics.errors import InputError, Problems, counted
+from winch_friction.physics.errors import InputError, Problems, counted, said_of
 from winch_friction.physics.signals import FloatArray, Run, cut_off, ends_of_range, held
 from winch_friction.physics.winch.crane import Crane
 from winch_friction.records.run_checks import rows_between
@@ -33,22 +33,22 @@ def read_run(path: Path | str, crane: Crane | None = None, *, complete: bool = T
     alone (truth files); `bag_options` go to `records.bags.read_bag`. What was noticed is in the run's `warnings`.
     Raises `InputError` in one line for whatever cannot be used.
     """
-    path = Path(path)
-    if not (path.is_file() or path.is_dir()):  # a pipe would be waited for
+    if not ((path := Path(path)).is_file() or path.is_dir()):  # a pipe would be waited for
         raise InputError(f"{path}: {'neither a file nor a folder' if path.exists() else 'no such file or folder'}")
     suffix = path.suffix.lower()  # a logger under Windows writes LOG.CSV
-    if is_bag(path):
-        from winch_friction.records.bags import read_bag
+    with said_of(path, path.name):
+        if is_bag(path):
+            from winch_friction.records.bags import read_bag
 
-        return read_bag(path, crane, complete=complete, **bag_options)
-    if suffix == ".csv":
-        from winch_friction.records.csv_file import read_csv_run
+            return read_bag(path, crane, complete=complete, **bag_options)
+        if suffix == ".csv":
+            from winch_friction.records.csv_file import read_csv_run
 
-        return read_csv_run(path, crane, complete)
-    if suffix in (".parquet", ".pq"):
-        from winch_friction.records.parquet_file import read_parquet_run
+            return read_csv_run(path, crane, complete)
+        if suffix in (".parquet", ".pq"):
+            from winch_friction.records.parquet_file import read_parquet_run
 
-        return read_parquet_run(path, crane, complete)
+            return read_parquet_run(path, crane, complete)
     raise InputError(f"{path}: not a kind of run file that is known; use {KINDS} (winch-friction import reads others)")
 
 

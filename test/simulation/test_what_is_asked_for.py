@@ -84,7 +84,8 @@ def smaller(**changes):
     gear."""
     first = load_crane("crane_150t")
     own = {"name": "own", "groups": {"main": 6, "active": 2, "passive": 4}, "drum": Drum((0.4, 0.5, 0.568)),
-           "max_displacement": 0.5 * first.max_displacement, "rated_load": 0.0, "gear_ratio": 0.8 * first.gear_ratio}  # fmt: skip
+           "max_displacement": 0.5 * first.max_displacement, "gear_ratio": 0.8 * first.gear_ratio,
+           "rated_load": 0.0}  # fmt: skip
     return replace(first, **{**own, **changes})
 
 

@@ -174,10 +174,16 @@ def test_blind_trials_of_another_crane_are_its_own(tmp_path, capsys, monkeypatch
     blind = ["gap", "--blind", "1", "--crane", "own.yaml", "--model", "seed.yaml", "--out", "blind"]
     assert winch_friction(blind) == 0
     assert len(searched[0]) == 12
-    plant = tmp_path / "blind" / "plant_own.yaml"
+    plant = tmp_path / "blind" / "plant.yaml"
     assert {each.plant for each in asked} == {str(plant.relative_to(tmp_path))}
     assert load_plant(plant).crane == "own"
-    assert "plant_own.yaml, scaled from winch_150t" in capsys.readouterr().err
+    assert "blind/plant.yaml, scaled from winch_150t" in capsys.readouterr().err
+    (tmp_path / "second").mkdir()
+    kept = tmp_path / "second" / "plant.yaml"
+    kept.write_text("somebody's own\n")
+    assert winch_friction([*blind[:-1], "second"]) == 2
+    assert "second/plant.yaml" in capsys.readouterr().err
+    assert [kept.read_text(), *kept.parent.iterdir()] == ["somebody's own\n", kept]
     other = replace(load_crane("own.yaml"), drive=Drive("electric"))
     monkeypatch.setattr(crane_file, "load_crane", lambda name: other)
     assert winch_friction(["gap", "--blind", "1", "--crane", "own.yaml", "--model", "seed.yaml", "--out", "other"]) == 2

@@ -24,7 +24,7 @@ def blind_trials(
         raise InputError(f"--blind {count}: give a number of trials, 1 or more")
     folders = [out / f"trial_{k + 1:02d}" for k in range(count)]
     refuse_existing(overwrite, *(folder / name for folder in folders for name in ("gap.json", "seal.json")))
-    plant = _plant_of(crane, out)
+    plant = _plant_of(crane, out / "plant.yaml", overwrite)
     rng = np.random.default_rng([seed, 271])
     rows = [_trial(k, crane, model, plant, folders[k], rng) for k in progress(range(count), "blind trials")]
     right = sum(row["right"] for row in rows)
@@ -39,9 +39,9 @@ def _text(value: Any) -> str:
     return ", ".join(value) if isinstance(value, list) else str(value)
 
 
-def _plant_of(crane: str, out: Path) -> str:
+def _plant_of(crane: str, path: Path, overwrite: bool) -> str:
     """The shipped plant of the crane that the runs are planned for; of any other one that is scaled from it, written
-    beside the trials."""
+    beside the trials, where none is lost by it."""
     from winch_friction.cli.init_texts import plant_text
     from winch_friction.records.atomic import write_text
     from winch_friction.records.crane_file import load_crane
@@ -52,8 +52,8 @@ def _plant_of(crane: str, out: Path) -> str:
     refuse_others(winch)
     if winch.name == PLANNED_FOR:
         return ITS_PLANT
-    path = out / f"plant_{winch.name}.yaml"
-    write_text(path, plant_text(winch, path.stem))
+    refuse_existing(overwrite, path)
+    write_text(path, plant_text(winch, f"plant_{winch.name}"))
     show_warnings([f"simulated with {path}, scaled from {ITS_PLANT}"])
     return str(path)
 

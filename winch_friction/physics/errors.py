@@ -36,8 +36,9 @@ def said_of(path: Any, name: str) -> Iterator[None]:
     try:
         yield
     except InputError as refused:
-        rest = [(each, each.removeprefix(f"{name}:")) for each in refused.problems]
-        raise InputError(*(f"{path}:{text}" if text != each else each for each, text in rest)) from None
+        own = f"{name}:"
+        said = (f"{path}:{each.removeprefix(own)}" if each.startswith(own) else each for each in refused.problems)
+        raise InputError(*said) from None
 
 
 class Problems:

@@ -124,8 +124,8 @@ DRIVES = {"normal": ("main",), "ahc": ("active", "passive")}  # which groups tur
 def fitted(scenarios: Sequence[Scenario], crane: Crane, plant: PlantFile) -> list[Scenario]:
     """The scenarios of a set for a hydraulic crane and its plant: the same share of the motors' displacement, of the
     load that they hold on the outer layer (of the rated load, where that is less) and of the pump's speed, as many
-    layers from the outer one. A sea that asks
-    more speed of this winch than of that one is as much lower; a higher one than planned nobody needs.
+    layers from the outer one. A sea that asks more speed of this winch than of that one is as much lower; a higher one
+    than planned nobody needs.
 
     Runs in a mode of which the crane has no motors are left out. Of the crane that the sets are planned for, with its
     plant, they come back as they are. Raises `InputError` for a crane that is not hydraulic, or not the plant's.
@@ -134,10 +134,11 @@ def fitted(scenarios: Sequence[Scenario], crane: Crane, plant: PlantFile) -> lis
 
     refuse_others(crane, plant=plant)
     first = load_crane(PLANNED_FOR)
-    own, speed = [each for each in scenarios if set(DRIVES[each.mode]) <= set(crane.groups)], 1.0
+    own = [each for each in scenarios if set(DRIVES[each.mode]) <= set(crane.groups)]
     if not own:
         there = ", ".join(crane.groups) or "none"
         raise InputError(f"crane '{crane.name}' has motor groups {there}: a run needs main, or active and passive")
+    speed = 1.0
     if "active" in crane.groups:
         speed = min(_rope_speed(crane, plant) / _rope_speed(first, load_plant(ITS_PLANT)), 1.0)
     return [_fitted(each, crane, first, speed) for each in own]
@@ -164,13 +165,12 @@ def _load_share(crane: Crane, planned: Crane, mode: str) -> float:
 
 def _held(crane: Crane, mode: str) -> float:
     """What the motors of a mode hold on the outer layer, per pressure, m^2."""
-    motors = sum(crane.groups[name] for name in DRIVES[mode])
-    return motors * crane.max_displacement * crane.gear_ratio / crane.drum.layer_radii[-1]
+    return crane.motor_total(DRIVES[mode]) * crane.max_displacement * crane.gear_ratio / crane.drum.layer_radii[-1]
 
 
 def _rope_speed(crane: Crane, plant: PlantFile) -> float:
     """Speed of the rope on the outer layer with the pump's whole flow in the active motors, m/s."""
-    active = crane.groups["active"] * crane.max_displacement
+    active = crane.motor_count("active") * crane.max_displacement
     return plant.pump.flow / active * crane.drum.layer_radii[-1] / crane.gear_ratio
 
 

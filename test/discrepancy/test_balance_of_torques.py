@@ -9,8 +9,8 @@ import pytest
 from winch_friction.discrepancy.preparation import balance as module
 from winch_friction.discrepancy.preparation import own_simulation, suspended_load
 from winch_friction.discrepancy.preparation.balance import Accounted, Balancing
+from winch_friction.discrepancy.preparation.motors import GroupSignals
 from winch_friction.discrepancy.preparation.own_simulation import REFERENCE, displacement_error, simulated_error
-from winch_friction.discrepancy.preparation.seen import GroupSignals
 from winch_friction.discrepancy.preparation.suspended_load import Hung, Mode, SuspendedLoad, heavy_by_tune, load_of
 from winch_friction.physics.channels import BAR, GRAVITY
 from winch_friction.physics.signals import Run

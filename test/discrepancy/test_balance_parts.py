@@ -8,8 +8,8 @@ import pytest
 
 from winch_friction.discrepancy import expansion, repair
 from winch_friction.discrepancy.preparation import balance, suspended_load, wire_mode
+from winch_friction.discrepancy.preparation.motors import GroupSignals
 from winch_friction.discrepancy.preparation.prepare import PreparedRun
-from winch_friction.discrepancy.preparation.seen import GroupSignals
 from winch_friction.discrepancy.preparation.suspended_load import Mode, SuspendedLoad
 from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.physics.channels import GRAVITY

@@ -16,9 +16,9 @@ from winch_friction.discrepancy.engine.blocks import (
     stretch,
     usable_blocks,
     usable_samples,
-    varies,
     without_column,
 )
+from winch_friction.discrepancy.engine.chance import varies
 from winch_friction.discrepancy.engine.crossfit import flip_p_values
 from winch_friction.discrepancy.thresholds import LIMITS
 

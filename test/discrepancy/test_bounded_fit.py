@@ -5,7 +5,7 @@ import pytest
 from scipy.optimize import lsq_linear
 
 from winch_friction.discrepancy.engine import problem
-from winch_friction.discrepancy.engine.problem import bounded_fit
+from winch_friction.discrepancy.engine.problem import bounded_fit, bounded_fits
 
 
 @pytest.mark.parametrize("seed", range(30))
@@ -77,3 +77,38 @@ def test_what_goes_in_circles_by_exchanging_all_ends_by_exchanging_one(seed, mon
     monkeypatch.setattr(problem, "_slowly", lambda *_: pytest.fail("went in circles"))
     expected = lsq_linear(a, y, (lower, upper), method="bvls", tol=1e-14).x
     np.testing.assert_allclose(bounded_fit(a.T @ a, a.T @ y, lower, upper), expected, atol=1e-8)
+
+
+@pytest.mark.parametrize("started", [False, True])
+def test_many_problems_at_once_end_where_each_ends_by_itself(started):
+    """Whatever rounds each of them takes, those that go in circles and that have no room among them."""
+    rng = np.random.default_rng(3)
+    size, count = 12, 60
+    parts = []
+    for k in range(count):
+        a = rng.normal(size=(30, 3)) @ rng.normal(size=(3, size)) + 0.3 * rng.normal(size=(30, size))
+        parts.append((a.T @ a * 10.0 ** (k % 5), a.T @ (5.0 * rng.normal(size=30))))
+    circling = np.random.default_rng(108)
+    a = circling.normal(size=(30, 3)) @ circling.normal(size=(3, size)) + 0.3 * circling.normal(size=(30, size))
+    parts[7] = (a.T @ a, a.T @ (circling.normal(size=30) * 5.0))
+    h, g = np.array([one for one, _ in parts]), np.array([two for _, two in parts])
+    lower, upper = np.zeros((count, size)), np.full((count, size), 10.0)
+    lower[::2], upper[::3] = -0.05, 0.02
+    upper[11] = lower[11]
+    start = np.clip(rng.normal(size=(count, size)), lower, upper) if started else None
+    kept = h.copy(), g.copy()
+    found = bounded_fits(h, g, lower, upper, start)
+    for k in range(count):
+        np.testing.assert_allclose(found[k], bounded_fit(h[k], g[k], lower[k], upper[k]), rtol=1e-7, atol=1e-9)
+    assert (found[11] == lower[11]).all()
+    np.testing.assert_array_equal(h, kept[0])
+    np.testing.assert_array_equal(g, kept[1])
+
+
+def test_one_set_of_bounds_and_one_guess_serve_all():
+    rng = np.random.default_rng(9)
+    h = np.array([np.eye(4) + 0.1 * np.diag(rng.random(4)) for _ in range(5)])
+    g, lower, upper = rng.normal(size=(5, 4)), np.zeros(4), np.full(4, 0.7)
+    found = bounded_fits(h, g, lower, upper, np.full(4, 0.7))
+    np.testing.assert_allclose(found, np.clip(g / np.diagonal(h, axis1=1, axis2=2), 0.0, 0.7), atol=1e-12)
+    assert bounded_fits(h[:0], g[:0], lower, upper).shape == (0, 4)

@@ -68,7 +68,7 @@ def test_beside_a_higher_order_only_the_same_column_is_another_name(same, more, 
         return replace(loses(own, np.full(40, left[name])), slots=tuple(slots))
 
     cross = SimpleNamespace(
-        explain=explain, floor=40.0, train_loss=lambda slots: (explain(slots).loss, None),
+        explain=explain, floor=40.0, fit_beside=lambda *_: None, train_loss=lambda slots: (explain(slots).loss, None),
         problem=SimpleNamespace(slots=(own, other), grams=SimpleNamespace(count=np.ones(40))),
     )  # fmt: skip
     found, _ = rivals_of(cross, explain((own,)), explain(()), 0, np.random.default_rng(0), same)
@@ -85,7 +85,7 @@ def test_of_rivals_that_are_one_over_the_runs_the_first_listed_comes_first(less)
         return replace(loses(own, np.full(40, left[slots[0] if slots else None])), slots=tuple(slots))
 
     cross = SimpleNamespace(
-        explain=explain, floor=40.0, train_loss=lambda slots: (explain(slots).loss, None),
+        explain=explain, floor=40.0, fit_beside=lambda *_: None, train_loss=lambda slots: (explain(slots).loss, None),
         problem=SimpleNamespace(slots=(own, brake, coulomb), grams=SimpleNamespace(count=np.ones(40))),
     )  # fmt: skip
     found, _ = rivals_of(cross, explain((own,)), explain(()), 0, np.random.default_rng(0))
@@ -155,7 +155,7 @@ def crossed(left, slots, floor=0.0):
         return replace(loses(A, np.full(40, loss / 40.0)), slots=tuple(own))
 
     return SimpleNamespace(
-        explain=explain, train_loss=lambda own: (left[tuple(own)], None), floor=floor,
+        explain=explain, fit_beside=lambda *_: None, train_loss=lambda own: (left[tuple(own)], None), floor=floor,
         excess=lambda found: found.loss - floor,
         problem=SimpleNamespace(slots=slots, grams=SimpleNamespace(count=np.ones(1))),
     )  # fmt: skip

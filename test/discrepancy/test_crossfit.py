@@ -13,16 +13,13 @@ from winch_friction.discrepancy.engine.blocks import Blocks, Slot, grams
 from winch_friction.discrepancy.engine.crossfit import (
     CrossFit,
     Explanation,
-    charged,
     far_less,
-    fitted,
     flip_p_values,
-    heads,
     on_their_own,
     other_start,
-    reshaped,
 )
 from winch_friction.discrepancy.engine.problem import Base, Layout, Problem
+from winch_friction.discrepancy.engine.trials import charged, fitted, heads, reshaped
 from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.physics.friction.table import Table, tabulated
 
@@ -188,6 +185,32 @@ def test_what_is_asked_again_is_what_was_answered_first():
     assert not again.explain((EFFECT,)).beta.flags.writeable
 
 
+def test_fits_of_many_at_once_are_those_of_one_after_the_other():
+    """Of as many columns or more, beside something and alone; what is known already is not asked for again."""
+    problem = problem_with(np.full(RUNS, 1.0))
+    blocks, rng = problem.blocks, np.random.default_rng(7)
+    more = np.column_stack([blocks.x, blocks.x[:, 1] ** 2, rng.standard_normal((len(blocks.y), 4))])
+    more = replace(blocks, x=more, weight=1.0 / (1.0 + blocks.run))
+    slots = (EFFECT, *(Slot(name, name, at) for name, at in (("b", (2,)), ("c", (3, 4)), ("d", (5,)), ("e", (4, 6)))))
+    lower, upper = np.array([-0.1, 0.0, 0.0, -1.0, 0.0, 0.0, 0.0]), np.array([0.1, 9.0, 0.3, 1.0, 5.0, 0.0, 0.01])
+    layout = replace(problem.layout, slots=slots, scales=np.ones(7), lower=lower, upper=upper)
+    problem = replace(problem, layout=layout, blocks=more, grams=grams(more))
+    for rest in ((), (slots[2],)):
+        one, many, others = CrossFit(problem), CrossFit(problem), [each for each in slots if each not in rest]
+        many.fit_beside(rest, others)
+        asked, many.problem = many.problem, None  # nothing is fitted any more
+        columns = [asked.columns((*rest, own)) for own in others]
+        found = [many._fits[each] for each in columns]
+        for (loss, beta), own in zip(found, others, strict=True):
+            wanted = one.train_loss((*rest, own))
+            assert loss == pytest.approx(wanted[0], rel=1e-9)
+            np.testing.assert_allclose(beta, wanted[1], rtol=1e-7, atol=1e-9)
+            assert not beta.flags.writeable
+        many.problem = asked
+        many.fit_beside(rest, others)
+        assert all(many._fits[each] is old for each, old in zip(columns, found, strict=True))
+
+
 @pytest.mark.parametrize(("unresolved", "gain", "inside"), [(0.0, 0.5, 0.2), (156.0, 0.159, 0.073)])
 def test_a_gain_is_of_the_held_out_error_and_inside_of_that_of_the_fit(unresolved, gain, inside):
     """What matters to nobody is saved by nothing."""
@@ -206,7 +229,7 @@ def test_stretches_of_a_few_runs_are_too_alike_to_be_sure_by():
     own = few.run < LIMITS.fewest_runs - 1
     some = {f.name: getattr(few, f.name)[own] for f in fields(few) if f.name != "features"}
     problem = replace(problem_with(np.ones(RUNS)), blocks=replace(few, **some), grams=grams(replace(few, **some)))
-    assert len(CrossFit(problem).sums) == LIMITS.folds
+    assert len(CrossFit(problem).sums_b) == LIMITS.folds
     assert p_value(problem) == 1.0
 
 
@@ -215,7 +238,9 @@ def test_of_each_thing_that_a_law_may_speak_of_the_best_is_asked_where_they_are_
     one, other = (Slot("zero", "", (1,), law="grows", part=part) for part in "ab")
     losses = {"a": 3.0, "b": 2.0}
     cross = SimpleNamespace(
-        problem=SimpleNamespace(slots=(one, other)), train_loss=lambda slots: (losses[slots[-1].part], None)
+        problem=SimpleNamespace(slots=(one, other)),
+        fit_beside=lambda *_: None,
+        train_loss=lambda slots: (losses[slots[-1].part], None),
     )
     assert [slot.part for slot in fitted(cross, (), set(), by_part)] == found
 
@@ -334,7 +359,9 @@ def test_of_each_law_the_variant_is_taken_that_leaves_least_and_of_what_is_there
     own, of_gear = Slot("wear", "", (4,)), Slot("wear", "", (5,), part="gear")
     losses = {slow: 30.0, fast: 20.0, own: 25.0, of_gear: 27.0, LACKED: 40.0}
     cross = SimpleNamespace(
-        problem=SimpleNamespace(slots=tuple(losses)), train_loss=lambda slots: (losses[slots[-1]], None)
+        problem=SimpleNamespace(slots=tuple(losses)),
+        fit_beside=lambda *_: None,
+        train_loss=lambda slots: (losses[slots[-1]], None),
     )
     assert fitted(cross, (), set()) == [fast, own, LACKED]
     assert fitted(cross, (), set(), by_part=True) == [fast, own, of_gear, LACKED]
@@ -443,6 +470,7 @@ def test_a_law_is_shaped_anew_within_what_it_speaks_of_beside_the_others_as_they
     cross = SimpleNamespace(
         problem=SimpleNamespace(slots=(first, second, *strange, other, wider)),
         # wide pays off beside the second shape alone
+        fit_beside=lambda *_: None,
         train_loss=lambda slots: (sum(losses[s] + 3.0 * (s is wider and second not in slots) for s in slots), None),
     )
     assert reshaped(cross, (first, other)) == (second, wider)

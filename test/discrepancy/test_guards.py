@@ -28,7 +28,7 @@ from winch_friction.discrepancy.engine.chance import (
     rivals_of,
     rms_with_interval,
 )
-from winch_friction.discrepancy.engine.crossfit import CrossFit, Explanation, fitted, heads
+from winch_friction.discrepancy.engine.crossfit import CrossFit, Explanation
 from winch_friction.discrepancy.engine.grammar import Factor, Law, Scored
 from winch_friction.discrepancy.engine.noise import noise_of_run
 from winch_friction.discrepancy.engine.problem import Base, Layout, Problem
@@ -42,6 +42,7 @@ from winch_friction.discrepancy.engine.selection import (
     select,
     with_fewer,
 )
+from winch_friction.discrepancy.engine.trials import fitted, heads
 from winch_friction.discrepancy.next_experiment import nothing_compared, supplying
 from winch_friction.discrepancy.outdone import _asked, _closed, _could_be, outdone
 from winch_friction.discrepancy.proof import (
@@ -1220,7 +1221,8 @@ def test_a_curve_is_a_rival_of_a_curve_although_another_law_speaks_for_its_cause
         return replace(explanation(per_block * (levels[key] + jitter[key])), slots=tuple(slots))
 
     stub = SimpleNamespace(
-        explain=explain, floor=0.96 * per_block * 40.0, train_loss=lambda slots: (explain(slots).loss, None),
+        explain=explain, floor=0.96 * per_block * 40.0, fit_beside=lambda *_: None,
+        train_loss=lambda slots: (explain(slots).loss, None),
         problem=SimpleNamespace(slots=(own, law, curve), grams=cross.problem.grams),
     )  # fmt: skip
     found, _ = rivals_of(stub, explain((own,)), explain(()), 0, rng)

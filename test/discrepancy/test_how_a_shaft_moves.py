@@ -6,19 +6,11 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from winch_friction.discrepancy.preparation import motors as signalling
 from winch_friction.discrepancy.preparation import seen as module
 from winch_friction.discrepancy.preparation.grid import Grid, samples_of, uniform
-from winch_friction.discrepancy.preparation.seen import (
-    GroupSignals,
-    Motion,
-    Seen,
-    at_one_speed,
-    drive_torque,
-    measured_groups,
-    motion_of,
-    resolution,
-    travel_of,
-)
+from winch_friction.discrepancy.preparation.motors import GroupSignals, drive_torque, measured_groups
+from winch_friction.discrepancy.preparation.seen import Motion, Seen, at_one_speed, motion_of, resolution, travel_of
 from winch_friction.physics.channels import BAR
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.signals import Run
@@ -242,9 +234,9 @@ def test_a_sparse_logs_torque_is_the_mean_over_the_two_periods_of_its_accelerati
 def motors(monkeypatch, swept=2e-5, names=("main",), **more):
     """Groups of two motors each with port A at 200 bar and port B at 10, and the windows that smoothed them."""
     windows, ones = [], np.ones(100)
-    monkeypatch.setattr(module, "smooth", lambda values, window: windows.append(window) or values)
+    monkeypatch.setattr(signalling, "smooth", lambda values, window: windows.append(window) or values)
     monkeypatch.setattr(
-        module, "smooth_between_steps", lambda values, *window: windows.append(window) or np.asarray(values, float)
+        signalling, "smooth_between_steps", lambda values, *window: windows.append(window) or np.asarray(values, float)
     )
     columns = {}
     for name in names:

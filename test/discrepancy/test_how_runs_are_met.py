@@ -164,8 +164,8 @@ def test_a_correction_changes_the_gap_by_its_slope_at_the_same_instants(monkeypa
         lambda runs, crane, one: ([SimpleNamespace(name=each.name, known=one.corrections) for each in runs], crane),
     )
 
-    def prepare(run, crane, model, load, *, mode, spikes):
-        assert mode == SWINGS
+    def prepare(run, crane, model, load, *, mode, spikes, seen):
+        assert (mode, seen) == (SWINGS, "what was seen")
         assert not spikes.any()
         start = 100.0 + (run.name == "late")
         return Prepared(run.name, gap_of([each.value for each in run.known], start + SIX), start=start)
@@ -223,7 +223,7 @@ def weighed(monkeypatch, true, follows=1.0, ways=(-1.0, 1.0), friction=400.0):
         )  # fmt: skip
 
     monkeypatch.setattr(expansion, "prepare", prepare)
-    found = expansion._estimated_load(run("a"), SimpleNamespace(gear_ratio=200.0), MODEL)
+    found = expansion._estimated_load(run("a"), SimpleNamespace(gear_ratio=200.0), MODEL, None)
     return found, calls
 
 
@@ -243,7 +243,7 @@ def test_what_hangs_weighs_no_less_than_nothing_and_one_way_alone_has_its_fricti
 
 
 def test_only_what_is_not_weighed_in_any_way_is_estimated_and_only_by_pressures(monkeypatch, crane_150t):
-    monkeypatch.setattr(expansion, "_estimated_load", lambda run, crane, model: 1.0)
+    monkeypatch.setattr(expansion, "_estimated_load", lambda run, crane, model, _: 1.0)
     runs = [Run(name, {"time": SIX, name: SIX}) for name in ("hook_load", "rope_force", "load_torque", "wire_out")]
     assert expansion.estimated_loads(runs, crane_150t, MODEL) == {"wire_out": 1.0}
     electric = SimpleNamespace(drive=SimpleNamespace(hydraulic=False))

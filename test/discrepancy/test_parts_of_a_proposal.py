@@ -136,19 +136,18 @@ def test_a_factor_of_the_groups_has_a_row_for_each_of_the_most_there_are():
 def test_evaluated_factors_are_in_their_own_rows_over_the_blocks_of_all_runs(monkeypatch):
     asked = []
 
-    def blocks(time, gap, columns, used, direction, channels, size, length):
-        asked.append((len(time), used.tolist(), size, length))
-        return SimpleNamespace(x=np.column_stack([np.asarray(each)[:1] for each in columns]))
+    def first_of(used, size):
+        asked.append((used.tolist(), size))
+        return lambda values: values[:1]
 
-    monkeypatch.setattr(vocabulary, "run_blocks", blocks)
+    monkeypatch.setattr(vocabulary, "block_means", first_of)
     monkeypatch.setattr(vocabulary, "block_size", lambda own: len(own.time))
-    monkeypatch.setattr(vocabulary, "segment_length", lambda total: total)
     speed, square, linear = Factor("linear", "motor_speed"), Factor("square", "pressure"), Factor("linear", "pressure")
     found = vocabulary.evaluated([square, speed, linear], [ONE, TWO], 2)
     assert found[speed].tolist() == [[1.0, 4.0]]
     assert found[square].tolist() == [[1e14, 0.0], [9e14, 0.0]]
     assert found[linear].tolist() == [[1e7, 0.0], [3e7, 0.0]]
-    assert asked == [(3, [True, False, True], 3, 1.5), (2, [True, False], 2, 1.5)]
+    assert asked == [([True, False, True], 3), ([True, False], 2)]
     assert vocabulary.evaluated([], [ONE], 2) == {}
 
 

@@ -11,8 +11,9 @@ from winch_friction.discrepancy.engine.crossfit import CrossFit
 from winch_friction.discrepancy.expansion import meet
 from winch_friction.discrepancy.preparation.balance import without_error
 from winch_friction.discrepancy.preparation.grid import smooth, smooth_between_steps, uniform
+from winch_friction.discrepancy.preparation.motors import GroupSignals, measured_groups
 from winch_friction.discrepancy.preparation.prepare import _followed, prepare
-from winch_friction.discrepancy.preparation.seen import GroupSignals, measured_groups, motion_of
+from winch_friction.discrepancy.preparation.seen import motion_of
 from winch_friction.discrepancy.preparation.suspended_load import Mode, load_of
 from winch_friction.discrepancy.regressors import (
     TOLERANCES,

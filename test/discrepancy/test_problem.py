@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 
 from winch_friction.discrepancy.engine.blocks import Blocks, RunBlocks, Slot, grams, joined, run_blocks
-from winch_friction.discrepancy.engine.crossfit import CrossFit, Explanation, charged
+from winch_friction.discrepancy.engine.crossfit import CrossFit, Explanation
 from winch_friction.discrepancy.engine.noise import noise_of_run
 from winch_friction.discrepancy.engine.problem import Base, Layout, Problem, problem_of
+from winch_friction.discrepancy.engine.trials import charged
 from winch_friction.discrepancy.thresholds import LIMITS
 
 RUNS, BLOCKS = 6, 240

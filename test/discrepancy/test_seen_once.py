@@ -14,7 +14,7 @@ from winch_friction.discrepancy.candidates.signals import signal_candidates
 from winch_friction.discrepancy.engine import regions
 from winch_friction.discrepancy.engine.blocks import RunBlocks, on_disk, usable_samples, without_column
 from winch_friction.discrepancy.expansion import Expansion, Split, expand_around, meet
-from winch_friction.discrepancy.preparation import prepare as preparing
+from winch_friction.discrepancy.preparation import motors
 from winch_friction.discrepancy.preparation import seen as seeing
 from winch_friction.discrepancy.search import Study, nameless, search_runs
 
@@ -39,18 +39,84 @@ def test_another_model_meets_known_runs_as_it_would_meet_them_anew(crane_150t, c
 
 def test_a_search_that_finds_nothing_looks_at_each_run_once(monkeypatch, crane_150t, crane2_model):
     """Each look smooths every channel; four models meet the runs: the seed, the draft, the fitted, the written."""
-    runs, looks = runs_with(917, "quiet", length=0.3), []
-    see = preparing.see
+    runs, looks, motion_of = runs_with(917, "quiet", length=0.3), [], seeing.motion_of
 
-    def counted(run, crane, turning=False, before=None):
+    def counted(grid, crane, name, turning):
         if not turning:
-            looks.append(run.name)
-        return see(run, crane, turning, before)
+            looks.append(name)
+        return motion_of(grid, crane, name, turning)
 
-    monkeypatch.setattr(preparing, "see", counted)
+    monkeypatch.setattr(seeing, "motion_of", counted)
     result = workflow.find_gap(runs, crane_150t, crane2_model, GapOptions(plan=False))
     assert not any(run.means for side in (result.train, result.holdout) for run in side.runs)
     assert sorted(looks) == sorted(run.name for run in runs)
+
+
+def _changed(run, **factors):
+    """The run with some of its columns times so much, all others the very same."""
+    return replace(run, columns={n: v * factors[n] if n in factors else v for n, v in run.columns.items()})
+
+
+@pytest.mark.parametrize("uneven", [False, True])
+def test_what_hangs_on_the_same_columns_is_not_seen_again(monkeypatch, crane_150t, uneven):
+    """Nine tenths of what corrections are tried on a run for leaves all but a pressure as it is."""
+    run = runs_with(917, "quiet", length=0.3)[0]
+    if uneven:
+        kept = np.delete(np.arange(len(run)), [70, 71, 150])
+        run = replace(run, columns={name: values[kept] for name, values in run.columns.items()})
+    first = seeing.see(run, crane_150t)
+    group, _ = first.measured
+    other = _changed(run, **{"main.pressure_a": 1.01})
+    smoothed, smooth = [], motors.smooth_between_steps
+    monkeypatch.setattr(motors, "smooth_between_steps", lambda *a: smoothed.append(1) or smooth(*a))
+    again, anew = seeing.see(other, crane_150t, before=first), seeing.see(other, crane_150t)
+    assert again.motion is first.motion
+    assert again.grid.time is first.grid.time
+    assert again.grid.columns["main.pressure_b"] is first.grid.columns["main.pressure_b"]
+    for name, values in anew.grid.columns.items():
+        np.testing.assert_array_equal(again.grid.columns[name], values)
+    (own,), torque = again.measured
+    assert not smoothed
+    (wanted,), theirs = anew.measured
+    np.testing.assert_array_equal(torque, theirs)
+    for name in ("pressure", "pressure_sum", "low_pressure", "displacement", "logged"):
+        np.testing.assert_array_equal(getattr(own, name), getattr(wanted, name))
+    assert (own.count, own.balances, own.digit) == (wanted.count, wanted.balances, wanted.digit)
+    assert own.displacement is group[0].displacement
+    assert own.pressure is not group[0].pressure
+    assert seeing.see(run, crane_150t, before=first) is first
+    assert not again.known  # asked once, it is let go
+
+
+@pytest.mark.parametrize("name", ["motor_speed", "main.displacement"])
+def test_what_hangs_on_another_column_is_seen_again(crane_150t, name):
+    run = runs_with(917, "quiet", length=0.3)[0]
+    first = seeing.see(run, crane_150t)
+    assert first.measured
+    other = _changed(run, **{name: 1.02})
+    again, anew = seeing.see(other, crane_150t, before=first), seeing.see(other, crane_150t)
+    np.testing.assert_array_equal(again.motion.speed, anew.motion.speed)
+    np.testing.assert_array_equal(again.motion.used, anew.motion.used)
+    np.testing.assert_array_equal(again.measured[0][0].displacement, anew.measured[0][0].displacement)
+    np.testing.assert_array_equal(again.measured[1], anew.measured[1])
+    assert (again.motion is first.motion) == (name != "motor_speed")
+    geared = replace(crane_150t, gear_ratio=100.0)
+    assert seeing.see(run, geared, before=first).motion is not first.motion
+    assert seeing.see(run, crane_150t, True, first).motion is not first.motion
+
+
+def test_a_hole_in_a_column_that_moves_nothing_is_one_of_the_motion_too(crane_150t):
+    """What stands still in the log has not been measured, whatever the speed says meanwhile."""
+    run = runs_with(917, "quiet", length=0.3)[0]
+    first = seeing.see(run, crane_150t)
+    torn = run["main.pressure_a"].copy()
+    torn[200:400] = np.nan
+    other = replace(run, columns={**run.columns, "main.pressure_a": torn})
+    again, anew = seeing.see(other, crane_150t, before=first), seeing.see(other, crane_150t)
+    assert not again.grid.valid.all()
+    np.testing.assert_array_equal(again.grid.valid, anew.grid.valid)
+    np.testing.assert_array_equal(again.motion.used, anew.motion.used)
+    assert again.motion.used.sum() < first.motion.used.sum()
 
 
 def test_the_columns_of_all_runs_are_held_once(monkeypatch, crane_150t, crane2_model):
@@ -96,7 +162,7 @@ def test_a_law_that_remembers_is_reckoned_over_the_whole_run(crane_150t, crane2_
 def test_what_was_turned_round_keeps_nothing_to_prepare_it_again(monkeypatch, crane_150t, crane2_model):
     runs, grids, uniform = runs_with(917, "quiet", length=0.3), [], seeing.uniform
     given = meet(runs, crane_150t, crane2_model)
-    monkeypatch.setattr(seeing, "uniform", lambda run: grids.append(run.name) or uniform(run))
+    monkeypatch.setattr(seeing, "uniform", lambda run, *known: grids.append(run.name) or uniform(run, *known))
     base = regressors.base_of(crane2_model, crane2_model)
     seed = Expansion(given.prepared, regressors.layout_of(base, [], given.prepared, crane2_model), crane2_model)
     none = seed.cross([run.name for run in given.prepared]).explain(())

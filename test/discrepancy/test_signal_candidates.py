@@ -29,7 +29,7 @@ from winch_friction.discrepancy.candidates.signals import (
     warm_scale_columns,
 )
 from winch_friction.discrepancy.catalogue import all_candidates
-from winch_friction.discrepancy.preparation.seen import GroupSignals
+from winch_friction.discrepancy.preparation.motors import GroupSignals
 from winch_friction.discrepancy.regressors import machine_sizes
 from winch_friction.physics.channels import CM3_PER_REV, RPM
 from winch_friction.physics.corrections import corrected, straight, unbent, unswung

@@ -35,7 +35,7 @@ def table(slots, losses, floor=0.0):
         return explained(own, losses["".join(sorted(KEYS[slot] for slot in own))])
 
     return SimpleNamespace(
-        explain=explain, train_loss=lambda own: (explain(own).loss, None), floor=floor,
+        explain=explain, fit_beside=lambda *_: None, train_loss=lambda own: (explain(own).loss, None), floor=floor,
         excess=lambda each: each.loss - floor, gain=lambda before, after: 1.0 - after.loss / before.loss,
         inside_gain=lambda before, after: 1.0 - after.loss / before.loss,
         problem=SimpleNamespace(slots=slots, grams=SimpleNamespace(count=np.ones(1))),
@@ -92,7 +92,7 @@ def test_what_every_machine_has_is_tried_all_at_once_each_by_its_best_shape_besi
     losses = {(wide,): 300.0, (narrow,): 500.0, (coulomb,): 400.0, (coulomb, wide): 290.0, (coulomb, narrow): 10.0}
     cross = SimpleNamespace(
         problem=SimpleNamespace(slots=(wide, narrow, coulomb, slope, wear)),
-        train_loss=lambda own: (losses[own], None), explain=lambda own: explained(own, 1.0),
+        fit_beside=lambda *_: None, train_loss=lambda own: (losses[own], None), explain=lambda own: explained(own, 1.0),
     )  # fmt: skip
     base = explained((), 1000.0)
     assert set(_plain_together(cross, base, RNG).slots) == {coulomb, narrow}
@@ -126,7 +126,8 @@ def test_a_second_law_stands_for_another_name_within_the_noise_and_never_for_wha
     losses = {(GEAR,): 40.0, (brake,): 40.0, (GEAR, brake): floor + 0.01, (GEAR, bent): left}
     cross = SimpleNamespace(
         problem=SimpleNamespace(slots=(GEAR, brake, bent)), excess=lambda each: each.loss - floor, floor=floor,
-        explain=lambda own: explained(own, losses[tuple(own)]), train_loss=lambda own: (losses[tuple(own)], None),
+        explain=lambda own: explained(own, losses[tuple(own)]), fit_beside=lambda *_: None,
+        train_loss=lambda own: (losses[tuple(own)], None),
     )  # fmt: skip
     assert (left - floor < 2.0 * least) is (left < 3.0)
     found = _of_fewest_causes(cross, cross.explain((GEAR, brake)), RNG)
@@ -167,7 +168,7 @@ def test_of_two_names_the_one_that_came_last_gives_way_to_a_second_law_and_never
             problem=SimpleNamespace(slots=(first, brake, bent, dragged)),
             excess=lambda each: each.loss - 2.0, floor=2.0,
             explain=lambda own, losses=losses: explained(own, losses[tuple(own)]),
-            train_loss=lambda own, losses=losses: (losses[tuple(own)], None),
+            fit_beside=lambda *_: None, train_loss=lambda own, losses=losses: (losses[tuple(own)], None),
         )  # fmt: skip
         assert _of_fewest_causes(cross, cross.explain((first, brake)), RNG).slots == expected
 
@@ -181,7 +182,7 @@ def test_a_second_law_that_is_drawn_freely_pays_for_it_beside_two_names_as_well(
     cross = SimpleNamespace(
         problem=SimpleNamespace(slots=(gear, brake, third, drawn, bent)), excess=lambda each: each.loss - 2.0,
         floor=2.0, explain=lambda own: explained(own, last.get(own[-1], 50.0) if len(own) == 3 else 40.0),
-        train_loss=lambda own: (last.get(own[-1], 50.0) if len(own) == 3 else 40.0, None),
+        fit_beside=lambda *_: None, train_loss=lambda own: (last.get(own[-1], 50.0) if len(own) == 3 else 40.0, None),
     )  # fmt: skip
     assert _of_fewest_causes(cross, cross.explain((gear, brake, third)), RNG).slots == (gear, brake, bent)
 

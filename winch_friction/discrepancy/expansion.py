@@ -14,6 +14,7 @@ from winch_friction.discrepancy.engine.blocks import Slot
 from winch_friction.discrepancy.engine.crossfit import CrossFit, Explanation
 from winch_friction.discrepancy.engine.problem import Layout
 from winch_friction.discrepancy.preparation.prepare import PreparedRun, prepare
+from winch_friction.discrepancy.preparation.seen import Seen
 from winch_friction.discrepancy.preparation.suspended_load import COURSE, Mode
 from winch_friction.discrepancy.preparation.wires import agreed_modes, swinging_along
 from winch_friction.discrepancy.regressors import accounted, base_of, build_problem, correction_std, layout_of
@@ -96,8 +97,8 @@ def meet(
     runs as they are `known` already: it is half of the work, and most of the memory.
     """
     right, own_crane = _corrected(runs, crane, model)
-    loads = estimated_loads(right, own_crane, model)
     old = {run.name: run for run in known.prepared} if known is not None else {}
+    loads = estimated_loads(right, own_crane, model, {name: run.seen for name, run in old.items()})
 
     def seen(run: Run, before: PreparedRun | None, **known: Any) -> PreparedRun:
         return prepare(run, own_crane, model, loads.get(run.name, NAN), before=before, **known)
@@ -116,7 +117,7 @@ def meet_again(before: Given, runs: Sequence[Run], crane: Crane, model: Friction
     """The runs of `before` as a model of hardly other values sees them: their wires are what they were there."""
     own = [run for run in runs if run.name in {each.name for each in before.runs}]
     right, own_crane = _corrected(own, crane, model)
-    loads = estimated_loads(right, own_crane, model)
+    loads = estimated_loads(right, own_crane, model, {run.name: run.seen for run in before.prepared})
     prepared = [
         prepare(run, own_crane, model, loads.get(run.name, NAN), mode=old.wire_mode, before=old)
         for run, old in zip(right, before.prepared, strict=True)
@@ -183,7 +184,7 @@ def with_corrections(
             if run.name not in names:
                 continue
             load = loads.get(run.name, NAN)
-            new = prepare(run, own_crane, model, load, mode=old.wire_mode, spikes=np.zeros(1, bool))
+            new = prepare(run, own_crane, model, load, mode=old.wire_mode, spikes=np.zeros(1, bool), seen=old.seen)
             gap = np.interp(old.time + old.start, new.time + new.start, new.gap)
             own.append((old.gap - gap) / step)
     return tuple(
@@ -266,18 +267,21 @@ def loads_by_balance(runs: Sequence[Run], crane: Crane, model: FrictionModel) ->
     return estimated_loads(right, own_crane, model)
 
 
-def estimated_loads(runs: Sequence[Run], crane: Crane, model: FrictionModel) -> dict[str, float]:
-    """Mass in kg per run without `hook_load`: what balances the torque once friction has its say.
+def estimated_loads(
+    runs: Sequence[Run], crane: Crane, model: FrictionModel, before: Mapping[str, Seen | None] | None = None
+) -> dict[str, float]:
+    """Mass in kg per run without `hook_load`: what balances the torque once friction has its say. `before`: runs by
+    name as they were seen already.
 
     Hoisting and lowering weigh alike, so that friction cancels in the mean.
     """
     unknown = [run for run in runs if not WEIGHED & set(run.columns)]
     told = [run for run in unknown if crane.drive.hydraulic or COURSE in run]
-    return {run.name: _estimated_load(run, crane, model) for run in told}
+    return {run.name: _estimated_load(run, crane, model, (before or {}).get(run.name)) for run in told}
 
 
-def _estimated_load(run: Run, crane: Crane, model: FrictionModel) -> float:
-    load, seen = 0.0, None
+def _estimated_load(run: Run, crane: Crane, model: FrictionModel, seen: Seen | None) -> float:
+    load = 0.0
     for _ in range(LOAD_ROUNDS):
         # a swinging load weighs the same in the mean, so its wire is not looked into
         prepared = prepare(run, crane, model, load, mode=Mode(0.0, 0.0), spikes=np.zeros(1, bool), seen=seen)

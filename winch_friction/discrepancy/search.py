@@ -28,8 +28,9 @@ from winch_friction.discrepancy.detectors.ripple_waves import waves_of, without_
 from winch_friction.discrepancy.engine import FloatArray
 from winch_friction.discrepancy.engine.blocks import Slot
 from winch_friction.discrepancy.engine.chance import Dependence, chance_of_no_gain, dependences, most_of_it, near
-from winch_friction.discrepancy.engine.crossfit import CrossFit, Explanation, candidate_trials, flip_p_values
+from winch_friction.discrepancy.engine.crossfit import CrossFit, Explanation, flip_p_values
 from winch_friction.discrepancy.engine.selection import Selection, select
+from winch_friction.discrepancy.engine.trials import candidate_trials
 from winch_friction.discrepancy.expansion import Expansion, Given, Split, expand_around
 from winch_friction.discrepancy.preparation.prepare import PreparedRun
 from winch_friction.discrepancy.regressors import base_of, build_problem, layout_of
@@ -233,19 +234,9 @@ def search_runs(study: Study, given: Given, also: LastResort | None = None) -> S
     if verdict.kind == NOTHING and (reversal or ripple or flow):
         verdict = Verdict(MISSING)
     return Search(
-        given,
-        train,
-        at_seed,
-        expansion,
-        cross,
-        selection,
-        tuple(left),
-        verdict,
-        reversal,
-        ripple,
-        flow,
+        given, train, at_seed, expansion, cross, selection, tuple(left), verdict, reversal, ripple, flow,
         (*blind, *unseen),
-    )
+    )  # fmt: skip
 
 
 def _refined(candidates: Sequence[Candidate], slots: Sequence[Slot]) -> list[Candidate]:

@@ -11,8 +11,9 @@ from winch_friction.discrepancy.candidates.signals import DELAY
 from winch_friction.discrepancy.catalogue import testable
 from winch_friction.discrepancy.engine.blocks import Slot
 from winch_friction.discrepancy.engine.chance import least_part
-from winch_friction.discrepancy.engine.crossfit import on_their_own, reshaped
+from winch_friction.discrepancy.engine.crossfit import on_their_own
 from winch_friction.discrepancy.engine.selection import Selection, with_fewer
+from winch_friction.discrepancy.engine.trials import reshaped
 from winch_friction.discrepancy.expansion import Expansion, meet
 from winch_friction.discrepancy.proof import Trial, adds, at_the_floor, far_off, is_minor, leaves_too_much, read_back
 from winch_friction.discrepancy.regressors import base_of, layout_of

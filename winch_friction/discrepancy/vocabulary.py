@@ -10,11 +10,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from winch_friction.discrepancy.engine import FloatArray
-from winch_friction.discrepancy.engine.blocks import run_blocks, segment_length
+from winch_friction.discrepancy.engine.blocks import block_means
 from winch_friction.discrepancy.engine.grammar import Factor
 from winch_friction.discrepancy.preparation.grid import lagged
+from winch_friction.discrepancy.preparation.motors import GroupSignals
 from winch_friction.discrepancy.preparation.prepare import PreparedRun
-from winch_friction.discrepancy.preparation.seen import GroupSignals
 from winch_friction.discrepancy.regressors import block_size
 
 QUANTILES = (0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9)
@@ -184,18 +184,15 @@ def _columns(single: Sequence[Factor], grouped: Sequence[Factor], run: PreparedR
 
 def evaluated(wanted: Sequence[Factor], runs: Sequence[PreparedRun], most: int) -> dict[Factor, FloatArray]:
     """Block means of factors over all runs, aligned with the problem's blocks."""
-    length = segment_length(sum(run.time[-1] for run in runs))
     single = [f for f in wanted if BY_NAME[f.signal].of_run is not None]
     grouped = [f for f in wanted if BY_NAME[f.signal].of_run is None]
+    if not runs or not (single or (grouped and most)):
+        return {}
     tables = []
     for run in runs:
-        columns = (each[:, None] for each in _columns(single, grouped, run, most))
-        if single or (grouped and most):
-            table = run_blocks(run.time, run.gap, columns, run.used, run.direction, {}, block_size(run), length)
-            tables.append(table.x)
-    if not tables:
-        return {}
-    x = np.concatenate(tables).T
+        means_of = block_means(run.used, block_size(run))
+        tables.append([means_of(each) for each in _columns(single, grouped, run, most)])
+    x = np.concatenate(tables, axis=1)
     found = {f: x[k : k + 1] for k, f in enumerate(single)}
     at = len(single)
     return found | {f: x[at + most * k : at + most * (k + 1)] for k, f in enumerate(grouped)}

@@ -13,8 +13,8 @@ from typing import Any
 import numpy as np
 
 from winch_friction.discrepancy.engine import FloatArray
+from winch_friction.discrepancy.preparation.motors import GroupSignals
 from winch_friction.discrepancy.preparation.prepare import PreparedRun
-from winch_friction.discrepancy.preparation.seen import GroupSignals
 from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.physics.friction import FrictionModel, Scope, symbols
 from winch_friction.physics.friction.correction import Correction

@@ -25,8 +25,8 @@ from winch_friction.discrepancy.candidates.geometry import hanging, m_h
 from winch_friction.discrepancy.candidates.signals import ZERO, in_groups, offset_law, p_0
 from winch_friction.discrepancy.engine import FloatArray
 from winch_friction.discrepancy.preparation.grid import lagged
+from winch_friction.discrepancy.preparation.motors import GroupSignals
 from winch_friction.discrepancy.preparation.prepare import PreparedRun
-from winch_friction.discrepancy.preparation.seen import GroupSignals
 from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.physics.channels import BAR
 from winch_friction.physics.friction.correction import Correction

@@ -16,8 +16,8 @@ from winch_friction.discrepancy.candidates import friction
 from winch_friction.discrepancy.candidates.candidate import Candidate, Possible, Shape, Shapes
 from winch_friction.discrepancy.candidates.friction import COULOMB, POSSIBLE, Grid, friction_candidate, term_columns
 from winch_friction.discrepancy.engine import FloatArray
+from winch_friction.discrepancy.preparation.motors import GroupSignals
 from winch_friction.discrepancy.preparation.prepare import PreparedRun
-from winch_friction.discrepancy.preparation.seen import GroupSignals
 from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.physics.channels import quotient_unit
 from winch_friction.physics.friction import FrictionModel, Scope, Term, term_named

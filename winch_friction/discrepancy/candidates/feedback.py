@@ -26,8 +26,8 @@ from winch_friction.discrepancy.candidates.candidate import (
 )
 from winch_friction.discrepancy.candidates.signals import OIL, e_p, in_groups, scale_columns, to, warm_columns
 from winch_friction.discrepancy.engine import FloatArray
+from winch_friction.discrepancy.preparation.motors import GroupSignals
 from winch_friction.discrepancy.preparation.prepare import PreparedRun
-from winch_friction.discrepancy.preparation.seen import GroupSignals
 from winch_friction.physics.channels import CM3_PER_REV
 from winch_friction.physics.corrections import s_shape
 from winch_friction.physics.friction.correction import Correction

@@ -28,8 +28,8 @@ from winch_friction.discrepancy.candidates.candidate import (
 from winch_friction.discrepancy.engine import FloatArray
 from winch_friction.discrepancy.engine.crossfit import CrossFit, Explanation
 from winch_friction.discrepancy.engine.problem import of_base, shares_by_run
+from winch_friction.discrepancy.preparation.motors import GroupSignals
 from winch_friction.discrepancy.preparation.prepare import PreparedRun
-from winch_friction.discrepancy.preparation.seen import GroupSignals
 from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.physics.channels import BAR
 from winch_friction.physics.friction.correction import THERMAL_REFERENCE, Correction

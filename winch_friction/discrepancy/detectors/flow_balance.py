@@ -27,8 +27,8 @@ from winch_friction.discrepancy.detectors.lost_flow import (
 )
 from winch_friction.discrepancy.engine.chance import sign_flip_p_value
 from winch_friction.discrepancy.preparation.grid import lagged
+from winch_friction.discrepancy.preparation.motors import GroupSignals
 from winch_friction.discrepancy.preparation.prepare import PreparedRun
-from winch_friction.discrepancy.preparation.seen import GroupSignals
 from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.physics import fluid
 from winch_friction.physics.channels import GROUP_CHANNELS

@@ -4,8 +4,9 @@ Values are in the gap's unit and weighted by each record's own noise.
 """
 
 import tempfile
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -96,10 +97,7 @@ class Grams:
     def total(self, fold: int | None = None) -> tuple[FloatArray, FloatArray]:
         """The sums over all parts or those of a fold: (c, c) and (c,)."""
         own = slice(None) if fold is None else self.part_fold == fold
-        size = self.b.shape[1]
-        rows, columns = np.triu_indices(size)
-        whole = np.empty((size, size))
-        whole[rows, columns] = whole[columns, rows] = self.upper[own].sum(axis=0)
+        whole = self.upper[own].sum(axis=0).take(_both_halves(self.b.shape[1]))
         return whole, np.asarray(self.b[own].sum(axis=0))
 
     def by_segment(self, values: FloatArray) -> FloatArray:
@@ -111,6 +109,15 @@ class Grams:
         found = np.empty((len(self.order), *values.shape[1:]), values.dtype)
         found[self.order] = np.repeat(values, self.count.astype(int), axis=0)
         return found
+
+
+@lru_cache(maxsize=1)
+def _both_halves(size: int) -> np.ndarray:
+    """Where the upper half, row by row, has the entries of a symmetric matrix: (size, size)."""
+    rows, columns = np.triu_indices(size)
+    places = np.empty((size, size), np.intp)
+    places[rows, columns] = places[columns, rows] = np.arange(len(rows))
+    return places
 
 
 def on_disk(blocks: Blocks) -> Blocks:
@@ -143,23 +150,28 @@ def run_blocks(
     they have, where these were asked for before. The means go `into` a place of the right size (columns, blocks) where
     one is given: those of many records are half a gigabyte, for which there is no room twice.
     """
-    starts, counts, keep = _usable(mask, size)
-    own = usable_samples(mask, size)
-    weights, places = mask[own].astype(float), size * np.arange(keep.sum())
-
-    def means_of(values: FloatArray) -> FloatArray:
-        return _means(values if len(values) == len(weights) else values[own], places, counts[keep], weights)
-
-    means = {name: means_of(values) for name, values in features.items()}
+    starts, _, keep, _ = _usable(mask, size)
+    means_of = block_means(mask, size)
     return RunBlocks(
         y=means_of(gap),
         x=_beside_each_other((p.values if isinstance(p, Means) else means_of(p) for p in columns), into),
         segment=(time[starts[keep]] / length).astype(int),
         position=np.flatnonzero(keep),
-        features=means,
+        features={name: means_of(values) for name, values in features.items()},
         direction=np.sign(means_of(direction)),
         made=made,
     )
+
+
+def block_means(mask: np.ndarray, size: int) -> Callable[[FloatArray], FloatArray]:
+    """What takes means over blocks of `size` samples, of the masked ones, of values over all or `usable_samples`."""
+    _, counts, keep, own = _usable(mask, size)
+    weights, places = mask[own].astype(float), size * np.arange(keep.sum())
+
+    def means_of(values: FloatArray) -> FloatArray:
+        return _means(values if len(values) == len(weights) else values[own], places, counts[keep], weights)
+
+    return means_of
 
 
 def usable_blocks(mask: np.ndarray, size: int) -> int:
@@ -169,13 +181,28 @@ def usable_blocks(mask: np.ndarray, size: int) -> int:
 
 def usable_samples(mask: np.ndarray, size: int) -> np.ndarray | slice:
     """The samples of the blocks that have enough masked ones, which alone any mean is taken of."""
-    keep = _usable(mask, size)[2]
-    return slice(None) if keep.all() else np.repeat(keep, size)[: len(mask)]
+    return _usable(mask, size)[3]
 
 
 def samples_of(columns: FloatArray, own: np.ndarray | slice) -> FloatArray:
     """These samples of columns (samples, columns), column by column in memory."""
     return columns if isinstance(own, slice) else np.array([each[own] for each in columns.T]).T
+
+
+def _usable(mask: np.ndarray, size: int) -> tuple[np.ndarray, FloatArray, np.ndarray, np.ndarray | slice]:
+    """Where blocks begin, how many masked samples each has, whether these are enough, and the samples of those."""
+    starts = np.arange(0, len(mask), size)
+    counts = np.add.reduceat(mask.astype(float), starts)
+    keep = counts >= LIMITS.fullest_block * size
+    return starts, counts, keep, slice(None) if keep.all() else np.repeat(keep, size)[: len(mask)]
+
+
+def _means(values: FloatArray, starts: np.ndarray, counts: FloatArray, weights: FloatArray) -> FloatArray:
+    """Means over the samples of each block that have the weight 1 and not 0."""
+    if not len(starts):
+        return np.zeros((0, *values.shape[1:]))
+    sums = np.add.reduceat(values * (weights[:, None] if values.ndim > 1 else weights), starts, axis=0)
+    return np.asarray(sums / (counts[:, None] if values.ndim > 1 else counts))
 
 
 def scaled(columns: FloatArray, scales: FloatArray, unit: float) -> Iterator[FloatArray]:
@@ -197,13 +224,6 @@ def without_column(table: RunBlocks, column: int) -> RunBlocks:
     return replace(table, y=y)
 
 
-def _usable(mask: np.ndarray, size: int) -> tuple[np.ndarray, FloatArray, np.ndarray]:
-    """Where blocks begin, how many masked samples each has, and whether these are enough."""
-    starts = np.arange(0, len(mask), size)
-    counts = np.add.reduceat(mask.astype(float), starts)
-    return starts, counts, counts >= LIMITS.fullest_block * size
-
-
 def _beside_each_other(parts: Iterable[FloatArray], into: FloatArray | None) -> FloatArray:
     if into is None:
         return np.column_stack(list(parts))
@@ -212,14 +232,6 @@ def _beside_each_other(parts: Iterable[FloatArray], into: FloatArray | None) -> 
         into[at : at + part.shape[1]] = part.T
         at += part.shape[1]
     return into.T
-
-
-def _means(values: FloatArray, starts: np.ndarray, counts: FloatArray, weights: FloatArray) -> FloatArray:
-    """Means over the samples of each block that have the weight 1 and not 0."""
-    if not len(starts):
-        return np.zeros((0, *values.shape[1:]))
-    sums = np.add.reduceat(values * (weights[:, None] if values.ndim > 1 else weights), starts, axis=0)
-    return np.asarray(sums / (counts[:, None] if values.ndim > 1 else counts))
 
 
 def joined(tables: Sequence[RunBlocks], noise: Mapping[int, float], x: FloatArray | None = None) -> Blocks:
@@ -257,8 +269,7 @@ def grams(blocks: Blocks) -> Grams:
     fold = np.unique(_folds(run), return_inverse=True)[1]  # numbered from 0
     pairs, part = np.unique(np.column_stack([run, fold]), axis=0, return_inverse=True)
     part_of_block = np.repeat(part.ravel(), count)
-    rows, columns = np.triu_indices(size)
-    half = rows * (size + 1) + columns
+    half = np.ravel_multi_index(np.triu_indices(size), (size + 1, size + 1))
     upper, b, y2 = np.empty((len(pairs), len(half))), np.empty((len(pairs), size)), np.empty(len(pairs))
     for k in range(len(pairs)):
         own = stretch(order[part_of_block == k])
@@ -287,11 +298,3 @@ def stretch(places: np.ndarray) -> np.ndarray | slice:
 def _stacked(parts: Sequence[FloatArray]) -> FloatArray:
     """Parts behind each other, column by column in memory: a fit asks for a few columns of all blocks."""
     return np.concatenate([part.T for part in parts], axis=1).T
-
-
-FEWEST_TOLD = 20  # blocks, four seconds of a signal
-
-
-def varies(values: FloatArray, least: float) -> bool:
-    """Whether a signal's known values are enough to tell of it, and differ by more than so much of their size."""
-    return len(values) >= FEWEST_TOLD and bool(np.ptp(values) > least * (np.abs(values).max() + 1e-12))

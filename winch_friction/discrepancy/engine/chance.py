@@ -11,17 +11,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from winch_friction.discrepancy.engine import FloatArray
-from winch_friction.discrepancy.engine.blocks import Blocks, Slot, varies
-from winch_friction.discrepancy.engine.crossfit import (
-    CrossFit,
-    Explanation,
-    candidate_trials,
-    charged,
-    fitted,
-    flip_p_values,
-    heads,
-    in_order,
-)
+from winch_friction.discrepancy.engine.blocks import Blocks, Slot
+from winch_friction.discrepancy.engine.crossfit import CrossFit, Explanation, flip_p_values
+from winch_friction.discrepancy.engine.trials import candidate_trials, charged, fitted, heads, in_order
 from winch_friction.discrepancy.thresholds import LIMITS
 
 
@@ -297,3 +289,11 @@ def sign_flip_p_value(gains: FloatArray) -> float:
     """Sign-flip p-value of a positive mean gain over segments."""
     signs = np.random.default_rng(0).choice([-1.0, 1.0], size=(LIMITS.flips, len(gains)))
     return float((1 + (signs @ gains >= gains.sum()).sum()) / (1 + LIMITS.flips))
+
+
+FEWEST_TOLD = 20  # blocks, four seconds of a signal
+
+
+def varies(values: FloatArray, least: float) -> bool:
+    """Whether a signal's known values are enough to tell of it, and differ by more than so much of their size."""
+    return len(values) >= FEWEST_TOLD and bool(np.ptp(values) > least * (np.abs(values).max() + 1e-12))

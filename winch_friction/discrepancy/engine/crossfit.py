@@ -1,10 +1,9 @@
 """Held-out losses per segment: coefficients from the other runs, judged on tens of seconds at a time.
 
-What a search puts to them: of each law its best variant and of each family its best law, and where else it may begin
-when adding one effect after the other has led where more than noise is left.
+And where else a search may begin when adding one effect after the other has led where more than noise is left.
 """
 
-from collections.abc import Container, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -16,7 +15,6 @@ from winch_friction.discrepancy.engine.problem import Problem
 from winch_friction.discrepancy.thresholds import LIMITS
 
 AT_BOUND = 0.999  # of a bound: nearer to it the fit was stopped there
-THE_SAME = 1e-5  # of the held-out loss: a thousand times its rounding; laws that are one over these runs
 
 
 @dataclass(frozen=True)
@@ -58,10 +56,12 @@ class CrossFit:
         self.total_g, self.total_b = g.total()
         self.total_y2 = float(g.y2.sum())
         self.unresolved = float(problem.unresolved.sum())
-        self.sums = []
-        for k in range(self.fold.max(initial=-1) + 1):
+        folds = int(self.fold.max(initial=-1)) + 1
+        self.sums_g, self.sums_b = np.empty((folds, *self.total_g.shape)), np.empty((folds, *self.total_b.shape))
+        for k in range(folds):
             own_g, own_b = g.total(k)
-            self.sums.append((self.total_g - own_g, self.total_b - own_b))
+            np.subtract(self.total_g, own_g, out=self.sums_g[k])
+            np.subtract(self.total_b, own_b, out=self.sums_b[k])
         self.fold_of_block = g.of_segments(g.fold)
         # a search asks for most sets three times; each answer keeps its slots alive, so that an id stays one slot's
         self._fits: dict[tuple[int, ...], tuple[float, FloatArray]] = {}
@@ -93,7 +93,20 @@ class CrossFit:
 
     def _fit(self, columns: tuple[int, ...], rest: FloatArray) -> tuple[float, FloatArray]:
         start = np.concatenate([rest, self.problem.layout.inside(columns[len(rest) :])])
-        beta = self.problem.fit(self.total_g, self.total_b, columns, start)
+        return self._with_loss(columns, self.problem.fit(self.total_g, self.total_b, columns, start))
+
+    def fit_beside(self, rest: Sequence[Slot], slots: Sequence[Slot]) -> None:
+        """Fit every one of these beside the rest to all training runs, those of as many columns at once: what
+        `train_loss` gives of them then is known."""
+        first, start = self.problem.columns(rest), self.train_loss(rest)[1]
+        new = dict.fromkeys(own.columns for own in slots if (*first, *own.columns) not in self._fits)
+        for width in {len(columns) for columns in new}:
+            others = [columns for columns in new if len(columns) == width]
+            found = self.problem.fits_beside(self.total_g, self.total_b, first, others, start)
+            for own, beta in zip(others, found, strict=True):
+                self._fits[*first, *own] = self._with_loss((*first, *own), beta)
+
+    def _with_loss(self, columns: Sequence[int], beta: FloatArray) -> tuple[float, FloatArray]:
         index = np.asarray(columns)
         loss = self.total_y2 - 2.0 * self.total_b[index] @ beta + beta @ self.total_g[np.ix_(index, index)] @ beta
         beta.setflags(write=False)  # it is given out again
@@ -109,8 +122,7 @@ class CrossFit:
     def _explain(self, slots: Sequence[Slot]) -> Explanation:
         columns = self.problem.columns(slots)
         loss, beta = self.train_loss(slots)
-        fits = [self.problem.fit(sum_g, sum_b, columns, beta) for sum_g, sum_b in self.sums]
-        left_out = np.reshape(fits, (-1, len(columns)))
+        left_out = self.problem.fits(self.sums_g, self.sums_b, columns, beta)
         left = self._left(columns, left_out[self.fold_of_block])
         return Explanation(tuple(slots), self.problem.grams.by_segment(left**2), beta, loss, left_out)
 
@@ -179,87 +191,6 @@ def flip_p_values(gains: FloatArray, rng: np.random.Generator) -> FloatArray:
     signs = rng.choice([-1.0, 1.0], size=(LIMITS.flips, gains.shape[1]))
     largest = ((signs @ gains.T) / scale).max(axis=1)
     return (1.0 + (largest[:, None] >= observed).sum(axis=0)) / (1.0 + LIMITS.flips)
-
-
-# -- candidates beside what is taken already
-def candidate_trials(cross: CrossFit, current: Explanation, taken: Container[str]) -> list[Explanation]:
-    """Every candidate that is not taken added to the set: of each law the variant that fits the training runs best, of
-    each family the law that does best on held-out runs.
-    """
-    slots = fitted(cross, current.slots, taken)
-    return heads(cross, current.loss, [cross.explain((*current.slots, slot)) for slot in slots])
-
-
-def fitted(cross: CrossFit, rest: Sequence[Slot], taken: Container[str], by_part: bool = False) -> list[Slot]:
-    """Of each law of each candidate, with `by_part` of each of the things that it may speak of, the variant that fits
-    the training runs best beside the rest."""
-    best: dict[tuple[str, str, str], tuple[float, Slot]] = {}
-    for slot in cross.problem.slots:
-        if slot.name in taken or any(slot is each for each in rest):
-            continue
-        loss, _ = cross.train_loss((*rest, slot))
-        key = (slot.name, slot.law, slot.part if by_part else "")
-        if key not in best or loss < best[key][0]:
-            best[key] = (loss, slot)
-    return [slot for _, slot in best.values()]
-
-
-def reshaped(cross: CrossFit, slots: Sequence[Slot]) -> tuple[Slot, ...]:
-    """The same laws, each in the shape that fits the training runs best beside the others: the one that a law had may
-    have been chosen beside an effect that is gone."""
-    shaped = list(slots)
-    for k, own in enumerate(slots):
-        rest = [*shaped[:k], *shaped[k + 1 :]]
-        law = own.name, own.law, own.part
-        alike = [each for each in cross.problem.slots if (each.name, each.law, each.part) == law]
-        shaped[k] = min((own, *alike), key=lambda each: cross.train_loss((*rest, each))[0])
-    return tuple(shaped)
-
-
-def heads(cross: CrossFit, before: float, trials: Sequence[Explanation]) -> list[Explanation]:
-    """The best member of each family by held-out loss; a free one only where no law does nearly as well."""
-    families: dict[str, list[Explanation]] = {}
-    for trial in sorted(trials, key=lambda each: charged(before, each.loss, each.slots[-1])):
-        families.setdefault(trial.slots[-1].name, []).append(trial)
-    return [_head(cross, members) for members in families.values()]
-
-
-def _head(cross: CrossFit, members: Sequence[Explanation]) -> Explanation:
-    """Of one cause's laws, the best first, that which speaks for it: the first, or the curve that leaves less than half
-    of what that one leaves above the floor, if this is more than nothing.
-
-    Between two causes flexibility costs a share of what is explained, for it imitates; within one it is how a law
-    differs from the literature's, and what counts is what is left.
-    """
-    first = members[0]
-    left = first.loss - cross.floor
-    if first.slots[-1].free or left <= LIMITS.least_excess * float(cross.problem.grams.count.sum()):
-        return first
-    closer = min((each for each in members if each.slots[-1].free), key=lambda each: each.loss, default=first)
-    return closer if closer.loss - cross.floor < LIMITS.outdone * left else first
-
-
-def charged(before: float, after: float, own: Slot) -> float:
-    """Held-out loss, of which a flexible member has to give back a share of what it saves, and whatever is not plain
-    the least share that decides between two that do the same, for each of its parameters."""
-    share = LIMITS.free_charge if own.free else 0.0 if own.plain else LIMITS.plain_first * len(own.columns)
-    return after + share * max(before - after, 0.0)
-
-
-def in_order(cross: CrossFit, losses: Sequence[float], slots: Sequence[Slot]) -> list[int]:
-    """Effects from the least charged loss on; of those that come to the same the one that is listed first leads, which
-    is a cause's own law before its others: rounding is no reason for a name, nor for a place in a set.
-    """
-    listed = {id(slot): k for k, slot in enumerate(cross.problem.slots)}
-    first = [listed.get(id(slot), len(listed)) for slot in slots]
-    ordered: list[int] = []
-    left = sorted(range(len(slots)), key=lambda k: (losses[k], first[k]))
-    while left:
-        level = losses[left[0]] * (1.0 + THE_SAME)
-        ties = [k for k in left if losses[k] <= level]
-        ordered += sorted(ties, key=lambda k: first[k])
-        left = left[len(ties) :]
-    return ordered
 
 
 # -- where else to begin

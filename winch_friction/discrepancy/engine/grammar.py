@@ -96,6 +96,7 @@ class Grammar:
         self.fold = cross.fold_of_block
         layout = cross.problem.layout
         self.lower, self.upper = np.append(layout.lower[self.own], -np.inf), np.append(layout.upper[self.own], np.inf)
+        self.start = np.append(base.beta, 0.0)  # most of its bounds stay where they are
         self.parts: dict[int | None, _Part] = {None: self._part(slice(None))}
         self.parts |= {int(fold): self._part(self.fold != fold) for fold in np.unique(self.fold)}
 
@@ -144,7 +145,7 @@ class Grammar:
         h, g = part.h.copy(), part.g.copy()
         h[-1, :-1] = h[:-1, -1] = part.x.T @ own
         h[-1, -1], g[-1] = float(own @ own) * (1.0 + 1e-9) + 1e-9, own @ part.y
-        beta = bounded_fit(h, g, self.lower, self.upper)
+        beta = bounded_fit(h, g, self.lower, self.upper, self.start)
         return float(beta[-1]), beta[:-1]
 
     def periodic(

@@ -8,7 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from winch_friction.discrepancy.engine import FloatArray
-from winch_friction.discrepancy.engine.blocks import Blocks, varies
+from winch_friction.discrepancy.engine.blocks import Blocks
+from winch_friction.discrepancy.engine.chance import varies
 from winch_friction.discrepancy.thresholds import LIMITS
 
 AT_ONCE = 8192  # blocks, of which all conditions are looked at together

@@ -8,18 +8,8 @@ import numpy as np
 from winch_friction.discrepancy.engine import FloatArray
 from winch_friction.discrepancy.engine.blocks import Slot
 from winch_friction.discrepancy.engine.chance import does_as_well, rivals_of
-from winch_friction.discrepancy.engine.crossfit import (
-    CrossFit,
-    Explanation,
-    candidate_trials,
-    charged,
-    far_less,
-    fitted,
-    flip_p_values,
-    heads,
-    in_order,
-    other_start,
-)
+from winch_friction.discrepancy.engine.crossfit import CrossFit, Explanation, far_less, flip_p_values, other_start
+from winch_friction.discrepancy.engine.trials import candidate_trials, charged, fitted, heads, in_order
 from winch_friction.discrepancy.thresholds import LIMITS
 
 LEAST_GAIN = min(gain for gain, _ in LIMITS.significance)

@@ -12,8 +12,9 @@ from typing import Any
 import numpy as np
 
 from winch_friction.discrepancy.preparation.grid import Grid, dilated
+from winch_friction.discrepancy.preparation.motors import Groups, GroupSignals
 from winch_friction.discrepancy.preparation.own_simulation import REFERENCE, Stood, displacement_error, simulated_error
-from winch_friction.discrepancy.preparation.seen import SPARSE, Groups, GroupSignals, Motion, Seen
+from winch_friction.discrepancy.preparation.seen import SPARSE, Motion, Seen
 from winch_friction.discrepancy.preparation.suspended_load import SuspendedLoad, load_of
 from winch_friction.physics.channels import BAR
 from winch_friction.physics.friction import FrictionModel

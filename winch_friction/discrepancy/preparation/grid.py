@@ -58,8 +58,9 @@ class Grid:
         return self.columns["time"]
 
 
-def uniform(run: Run) -> Grid:
-    """The run between its samples linearly; raises `InputError` for a run that is too short or out of order."""
+def uniform(run: Run, before: tuple[Run, Grid] | None = None) -> Grid:
+    """The run between its samples linearly; raises `InputError` for a run that is too short or out of order. What it
+    has in common with a run whose grid was made `before` is held once."""
     time = run.time - run.time[0]
     if len(time) < MIN_SAMPLES:
         raise InputError(f"{run.name}: only {len(time)} samples; at least {MIN_SAMPLES} are needed")
@@ -73,7 +74,9 @@ def uniform(run: Run) -> Grid:
             f"{run.name}: column 'time' leaps by {steps[leap]:.4g} s at {run.time[leap]:.14g} s, and there are "
             f"{len(time)} samples of {time[-1]:.4g} s: split the file there"
         )
-    grid = np.arange(0.0, time[-1] + 0.5 * dt, dt)
+    old = before[0].columns if before is not None and before[0].time is run.time else {}
+    known = before[1].columns if before is not None and old else {}
+    grid = known["time"] if known else np.arange(0.0, time[-1] + 0.5 * dt, dt)
     even = len(grid) == len(time) and np.abs(grid - time).max() < 1e-3 * dt
     valid = np.ones(len(grid), bool)
     columns: dict[str, FloatArray] = {"time": grid}
@@ -81,7 +84,10 @@ def uniform(run: Run) -> Grid:
         good = np.isfinite(values)
         if name == "time" or not good.any():
             continue
-        columns[name] = values if even and good.all() else np.interp(grid, time[good], values[good])
+        if name in known and old[name] is values:
+            columns[name] = known[name]
+        else:
+            columns[name] = values if even and good.all() else np.interp(grid, time[good], values[good])
         if not good.all():
             valid &= np.interp(grid, time, (~good).astype(float)) < 0.5
     for k in np.flatnonzero(steps > HOLE * dt):

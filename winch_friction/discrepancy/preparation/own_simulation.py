@@ -11,7 +11,7 @@ from functools import cached_property
 import numpy as np
 
 from winch_friction.discrepancy.preparation.grid import Grid, uniform
-from winch_friction.discrepancy.preparation.seen import GroupSignals
+from winch_friction.discrepancy.preparation.motors import GroupSignals
 from winch_friction.physics.corrections import corrected
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.friction import FrictionModel

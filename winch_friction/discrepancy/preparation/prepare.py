@@ -11,7 +11,8 @@ from scipy.ndimage import binary_opening, maximum_filter1d
 from winch_friction.discrepancy.engine.noise import Made
 from winch_friction.discrepancy.preparation.balance import SHOWS, SPARSEST, Accounted, Balance, Balancing, Groups
 from winch_friction.discrepancy.preparation.grid import SIMPSON, Grid, smoothing_of, spikes_of
-from winch_friction.discrepancy.preparation.seen import GroupSignals, Motion, Seen, see, shared
+from winch_friction.discrepancy.preparation.motors import GroupSignals
+from winch_friction.discrepancy.preparation.seen import Motion, Seen, see, shared
 from winch_friction.discrepancy.preparation.suspended_load import (
     FEWEST_MOVING,
     USUAL_DAMPING,
@@ -172,8 +173,7 @@ def prepare(
     `seen` of this run does not depend on the model; of one as another saw it `before`, what is the same is held once.
     Raises `InputError` for a run that is too short or lacks a channel that the torque balance needs.
     """
-    seen = before.seen if before is not None else seen
-    seen = seen if seen is not None and seen.is_of(run, crane, turning) else see(run, crane, turning, seen)
+    seen = see(run, crane, turning, before.seen if before is not None and seen is None else seen)
     grid, motion = seen.grid, seen.motion
     balancing = Balancing(run, crane, model, seen, accounted or Accounted())
     swing, hanging, balance = _on_wire(balancing, load_seen(seen, crane, load), mode, wire)

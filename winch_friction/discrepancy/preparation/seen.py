@@ -15,20 +15,23 @@ from scipy.ndimage import binary_opening
 from winch_friction.discrepancy.preparation.grid import (
     THIRD_DIFFERENCE,
     Grid,
-    digit_of,
     dilated,
     noise_level,
     samples_of,
     smooth,
-    smooth_between_steps,
     speed_window,
     uniform,
 )
-from winch_friction.physics.channels import BAR
+from winch_friction.discrepancy.preparation.motors import (
+    Groups,
+    GroupSignals,
+    KnownGroups,
+    drive_torque,
+    measured_groups,
+)
 from winch_friction.physics.errors import InputError
-from winch_friction.physics.signals import GROUP_CHANNELS, FloatArray, Run
+from winch_friction.physics.signals import FloatArray, Run
 from winch_friction.physics.winch import Crane
-from winch_friction.physics.winch.crane import driving_group, hydraulic_torque
 
 # -- how the shaft moves
 CERTAIN = 7.0  # speed noise times sample time: about two steps of a counting encoder
@@ -177,33 +180,9 @@ def travel_of(angle: FloatArray, least: float) -> tuple[FloatArray, FloatArray, 
     return np.array(direction), np.array(travel), np.array(progress)
 
 
-# -- what the motors' signals make
+# -- one run as it is seen
 SPARSE = 0.03  # s; from such a period on a central difference smears what it differentiates
-# of the crane's largest displacement; a motor that is swung in further would need twenty times the usual pressure
-MIN_DISPLACEMENT_SHARE = 0.05
-
-
-@dataclass(frozen=True)
-class GroupSignals:
-    """One motor group along a run: motors, predicted or smoothed pressures Pa, displacement of each motor m^3/rad."""
-
-    name: str
-    count: int
-    pressure: FloatArray  # drop p_A - p_B
-    pressure_sum: FloatArray
-    low_pressure: FloatArray  # of the two ports
-    displacement: FloatArray
-    balances: bool  # closes the torque balance: its pressure is predicted
-    logged: FloatArray  # the drop as it was measured, smoothed
-    digit: float = 0.0  # Pa by which the coarser of its pressures is written; 0 where that cannot be told
-
-    def of_zero(self, step: float) -> FloatArray:
-        """Torque at the shaft in N m of an error of both transducers of 1 bar, or by as much more as their digit is
-        coarser than a `step` of so many bar."""
-        return self.count * self.displacement * max(BAR, self.digit / step)
-
-
-Groups = tuple[GroupSignals, ...]
+MOTION = ("motor_speed", "drum_speed", "shaft_angle")  # columns that tell how the shaft moves
 
 
 @dataclass(frozen=True)
@@ -217,6 +196,7 @@ class Seen:
     turning: bool
     grid: Grid
     motion: Motion
+    known: list[KnownGroups] = field(default_factory=list, repr=False, compare=False)  # as seen before, till asked
     load: dict[str, Any] = field(default_factory=dict, init=False, repr=False, compare=False)  # as it was asked last
 
     def is_of(self, run: Run, crane: Crane, turning: bool) -> bool:
@@ -227,7 +207,8 @@ class Seen:
     @cached_property
     def measured(self) -> tuple[Groups, FloatArray]:
         """Groups with their measured pressures and the drive torque that these make, whatever the load does."""
-        groups = measured_groups(self.grid.columns, self.run, self.crane, self.motion.window)
+        known = self.known.pop() if self.known else None
+        groups = measured_groups(self.grid.columns, self.run, self.crane, self.motion.window, known)
         return groups, self.smoothed(drive_torque(self.grid.columns, groups))
 
     def smoothed(self, torque: FloatArray) -> FloatArray:
@@ -243,42 +224,19 @@ class Seen:
 
 def see(run: Run, crane: Crane, turning: bool = False, before: Seen | None = None) -> Seen:
     """What a run tells whatever the model says; `turning` as in `motion_of`, whose errors it raises. Of a run that was
-    seen in another way `before` the grid is the same, and is held once."""
-    grid = before.grid if before is not None and before.run is run else uniform(run)
-    return Seen(run, crane, turning, grid, motion_of(grid, crane, run.name, turning))
-
-
-def measured_groups(columns: Mapping[str, FloatArray], run: Run, crane: Crane, window: int) -> Groups:
-    """All groups with their smoothed pressures; `InputError` where one lacks a channel or has no displacement."""
-    if not (names := run.groups):
-        raise InputError(f"{run.name}: no motor group's pressures and displacement; they close the torque balance")
-    balancing = driving_group(names)
-    return tuple(_measured(columns, run, crane, name, name == balancing, window) for name in names)
-
-
-def _measured(
-    columns: Mapping[str, FloatArray], run: Run, crane: Crane, name: str, balances: bool, window: int
-) -> GroupSignals:
-    for channel in GROUP_CHANNELS:
-        if f"{name}.{channel}" not in columns:
-            raise InputError(f"{run.name}: column '{name}.{channel}' is missing or empty; the torque balance needs it")
-    a, b = columns[f"{name}.pressure_a"], columns[f"{name}.pressure_b"]
-    fed_back = columns[f"{name}.displacement"]
-    displacement = smooth_between_steps(fed_back, window, 5 * window)
-    steady = float(np.median(displacement))
-    if np.std(displacement) <= noise_level(fed_back):  # the feedback's noise alone: the motors are set and stay
-        displacement = np.full(len(displacement), steady)
-    if steady < MIN_DISPLACEMENT_SHARE * crane.max_displacement and balances:
-        raise InputError(f"{run.name}: '{name}.displacement' is nearly zero; its pressure cannot carry the load")
-    drop, total, low = (smooth(each, 2 * window) for each in (a - b, a + b, np.minimum(a, b)))
-    digit = max(digit_of(run[f"{name}.{port}"]) for port in ("pressure_a", "pressure_b"))
-    return GroupSignals(name, crane.motor_count(name), drop, total, low, displacement, balances, drop, digit)
-
-
-def drive_torque(columns: Mapping[str, FloatArray], groups: Groups) -> FloatArray:
-    """Measured torque of all motors at the shaft, N m, from the pressures as they were logged."""
-    drops = (columns[f"{g.name}.pressure_a"] - columns[f"{g.name}.pressure_b"] for g in groups)
-    return np.asarray(hydraulic_torque((g.count, g.displacement, d) for g, d in zip(groups, drops, strict=True)))
+    seen `before`, in another way or with other errors taken out, what hangs on the same columns is held once."""
+    if before is None:
+        grid = uniform(run)
+        return Seen(run, crane, turning, grid, motion_of(grid, crane, run.name, turning))
+    if before.is_of(run, crane, turning):
+        return before
+    grid = before.grid if before.run is run else uniform(run, (before.run, before.grid))
+    how = (before.turning, before.crane.gear_ratio, before.grid.dt) == (turning, crane.gear_ratio, grid.dt)
+    moves = all(grid.columns.get(name) is before.grid.columns.get(name) for name in MOTION)
+    same = how and moves and np.array_equal(grid.valid, before.grid.valid)
+    motion = before.motion if same else motion_of(grid, crane, run.name, turning)
+    groups = before.__dict__["measured"][0] if "measured" in before.__dict__ else ()
+    return Seen(run, crane, turning, grid, motion, [KnownGroups(groups, before.grid.columns, before.motion.window)])
 
 
 def shared(own: Any, other: Any) -> Any:

@@ -15,7 +15,6 @@ from winch_friction.discrepancy.answer import GapOptions
 from winch_friction.discrepancy.candidates.candidate import Candidate, Shape
 from winch_friction.discrepancy.candidates.families import literature
 from winch_friction.discrepancy.candidates.friction import shipped_friction
-from winch_friction.discrepancy.catalogue import levels_of, two_levels
 from winch_friction.discrepancy.engine.blocks import Blocks, Slot, grams
 from winch_friction.discrepancy.engine.problem import Base, Layout, Problem
 from winch_friction.discrepancy.logged_causes import _left_by, _medians, _spread, follows_a_signal, told_by_a_signal
@@ -31,6 +30,8 @@ from winch_friction.discrepancy.run_states import (
     _within,
     in_each_run,
     in_some_runs,
+    levels_of,
+    two_levels,
 )
 from winch_friction.discrepancy.workflow import find_gap
 from winch_friction.physics.channels import BAR
@@ -97,21 +98,51 @@ def test_a_brake_that_drags_by_another_amount_in_every_run_is_named_where_nothin
     assert held["after"] < 1.2 * held["noise_floor"] < 0.2 * held["before"]
 
 
+@pytest.mark.long
+def test_an_offset_since_a_date_is_named_though_a_run_before_it_is_hardly_known():
+    """Nine runs are above the others by 25 deviations and more; the three before are less well known than most."""
+    said = diagnose(Case("law", (("pressure_offset:since_a_date", 1.0),), DRAWN, 75_000_233, (0.0, 1.5)))
+    (effect,) = said["answer"]["effects"]
+    assert (effect["name"], effect["law"]) == ("pressure_offset", SINCE)
+    held = said["answer"]["gap"]["holdout"]
+    assert held["after"] < 1.2 * held["noise_floor"] < 0.2 * held["before"]
+
+
 # -- levels
 def test_two_clear_levels_are_told_and_one_is_not():
     rng = np.random.default_rng(0)
-    small = np.full(FULL, 0.1)
+    small, sure = np.full(FULL, 0.1), np.full(FULL, 1e-9)
     levels = np.where(np.arange(FULL) % 3 == 0, 6.0, 0.0) + 0.1 * rng.standard_normal(FULL)
     assert list(two_levels(levels, small)) == [k % 3 == 0 for k in range(FULL)]
     assert list(two_levels(-levels, small)) == [k % 3 == 0 for k in range(FULL)]
     draws = [np.random.default_rng(seed) for seed in range(500)]
     for spread in ("standard_normal", "random", "exponential"):
-        seeming = [two_levels(getattr(each, spread)(size=FULL), np.zeros(FULL)) is not None for each in draws]
+        seeming = [two_levels(getattr(each, spread)(size=FULL), sure) is not None for each in draws]
         assert np.mean(seeming) < 0.01, spread
     assert two_levels(levels, np.full(FULL, 2.0)) is None  # nobody knows them well enough
     assert two_levels(levels, np.full(FULL, 1.2)) is not None  # runs that agree are known better than they state
     alone = np.where(np.arange(FULL) == 3, 6.0, 0.0)
     assert two_levels(alone, small) is None  # one run is no state
+
+
+@pytest.mark.parametrize(("apart", "told"), [(1.6, True), (0.3, False)])
+def test_of_levels_that_are_apart_by_far_the_least_known_run_is_known_well_enough(apart, told):
+    """Three runs before a date are known by a half to a seventh as well as is usual, and by 25 of their deviations."""
+    rng, there = np.random.default_rng(4), np.arange(FULL) > 2
+    deviations = np.where(there, 0.022, np.array([0.036, 0.031, 0.066, *[1.0] * (FULL - 3)]))
+    levels = apart * there + 0.3 * deviations * rng.standard_normal(FULL)
+    found = two_levels(levels, deviations)
+    assert (found is not None) is told
+    assert not told or list(found) == list(there)
+
+
+def test_levels_by_chance_are_no_two_however_unequally_they_are_known():
+    seeming = []
+    for seed in range(500):
+        rng = np.random.default_rng(seed)
+        deviations = np.exp(rng.standard_normal(FULL))
+        seeming.append(two_levels(deviations * rng.standard_normal(FULL), deviations, rng.random(FULL)) is not None)
+    assert np.mean(seeming) < 0.01
 
 
 def test_two_levels_may_follow_the_load_alike_but_a_law_of_the_load_is_no_level():
@@ -125,7 +156,7 @@ def test_two_levels_may_follow_the_load_alike_but_a_law_of_the_load_is_no_level(
     assert two_levels(2e-5 * load + 0.05 * rng.standard_normal(FULL), small, load) is None
     draws = [np.random.default_rng(seed) for seed in range(500)]
     for spread in ("standard_normal", "random"):
-        seeming = [two_levels(getattr(d, spread)(size=FULL), 0.0 * small, load) is not None for d in draws]
+        seeming = [two_levels(getattr(d, spread)(size=FULL), 1e-8 * small, load) is not None for d in draws]
         assert np.mean(seeming) < 0.01, spread
 
 

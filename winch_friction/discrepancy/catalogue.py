@@ -33,14 +33,11 @@ from winch_friction.discrepancy.candidates.feedback import bends_over, feedback_
 from winch_friction.discrepancy.candidates.friction import friction_candidate, no_load, shipped_friction
 from winch_friction.discrepancy.candidates.geometry import geometry_candidates, layers_apart
 from winch_friction.discrepancy.candidates.signals import by_port, signal_candidates
-from winch_friction.discrepancy.engine import FloatArray
-from winch_friction.discrepancy.engine.blocks import Slot, first_halves
-from winch_friction.discrepancy.engine.problem import Problem
 from winch_friction.discrepancy.logged_causes import follows_a_signal
 from winch_friction.discrepancy.preparation.grid import overlaps
 from winch_friction.discrepancy.preparation.prepare import PreparedRun
 from winch_friction.discrepancy.regressors import base_of, build_problem, layout_of
-from winch_friction.discrepancy.run_states import BRAKE, WEAR, in_each_run, in_some_runs
+from winch_friction.discrepancy.run_states import BRAKE, WEAR, in_each_run, in_some_runs, levels_of, two_levels
 from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.friction import FrictionModel, term_named
@@ -180,7 +177,6 @@ def testable(
 
 # -- what these runs show in two levels, or by another amount each
 SIGNALS = ("pressure_offset", "pressure_scale", "swivel_offset", "signal_delay", "tare_load")
-FEWEST_OF_A_LEVEL = 1.5  # runs as well known as most: two, of which one may be known less
 
 
 def at_hand(runs: Sequence[PreparedRun], model: FrictionModel, effects_file: Path | None = None) -> list[Candidate]:
@@ -222,78 +218,3 @@ def another_in_each_run(train: Collection[str], runs: Sequence[PreparedRun], mod
     if len(runs) < LIMITS.fewest_levels or levels.max() <= 0.0 or follows_a_signal(runs, levels):
         return []
     return in_each_run(runs, levels)
-
-
-def levels_of(
-    problem: Problem, slot: Slot, runs: int, whole: Sequence[bool] | None = None
-) -> tuple[FloatArray, FloatArray]:
-    """Size of a candidate in the first half of each run, or in all of it where it is `whole`, and its deviation from
-    the others', in its units, the base fitted to all of them; NaN where a run has none of it."""
-    blocks, base = problem.blocks, list(problem.base_columns)
-    first = first_halves(blocks)
-    first |= np.asarray(whole if whole is not None else [False] * runs)[blocks.run]
-    weight, run = blocks.weight[first], blocks.run[first]
-    own = blocks.x[first, slot.columns[0]] * weight
-    columns = np.column_stack(
-        [blocks.x[first][:, base] * weight[:, None], own[:, None] * (run[:, None] == range(runs))]
-    )
-    size = np.sqrt((columns**2).sum(axis=0))
-    h = columns.T @ columns
-    h[np.arange(len(base)), np.arange(len(base))] += LIMITS.prior_weight
-    at = np.arange(len(base), len(h))
-    has = size[at] > 1e-6 * max(float(size[at].max()), 1e-300)
-    h[at, at] += np.where(has, 0.0, 1.0)
-    inverse = np.linalg.pinv(h)
-    beta = inverse @ (columns.T @ (blocks.y[first] * weight))
-    left = blocks.y[first] * weight - columns @ beta
-    # what the base does not know moves the levels of all runs alike, and nothing between them
-    covariance = inverse[np.ix_(at, at)][np.ix_(has, has)]
-    alike = np.eye(len(covariance)) - 1.0 / max(len(covariance), 1)
-    deviations = np.ones(len(at))
-    deviations[has] = np.sqrt(np.maximum(np.diag(alike @ covariance @ alike), 0.0))
-    deviations *= np.sqrt(LIMITS.prior_weight * max(float(np.mean(left**2)), 1.0))
-    return np.where(has, beta[at], np.nan), np.where(has, deviations, np.nan)
-
-
-def two_levels(levels: FloatArray, deviations: FloatArray, loads: FloatArray | None = None) -> np.ndarray | None:
-    """Which values (runs,) belong to the level that is further from zero, where they make two clear ones with at least
-    two runs each; None where they do not. What is NaN belongs to neither and is not there.
-
-    In either level the values may follow the runs' `loads` alike, as whatever the base model has wrong does. A value
-    counts the less the larger its deviation is beside the usual one: of a light load little is known of a displacement.
-    """
-    known = np.flatnonzero(np.isfinite(levels))
-    if len(known) < LIMITS.fewest_levels:
-        return None
-    order = known[np.argsort(levels[known])]
-    load = np.zeros(len(levels)) if loads is None else loads - loads[known].mean()
-    usual = float(np.median(deviations[known]))
-    weights = np.minimum(1.0, (usual / np.maximum(deviations, max(usual, 1e-300))) ** 2)
-    parts = [(order[:k], order[k:]) for k in range(2, len(order) - 1)]
-    parts = [each for each in parts if min(weights[part].sum() for part in each) >= FEWEST_OF_A_LEVEL]
-    fits = [(_two_lines(levels, load, weights, low, high), low, high) for low, high in parts]
-    if not fits:
-        return None
-    (within, slope), low, high = min(fits, key=lambda fit: fit[0][0])
-    within /= max(float(weights[order].sum()) - (2 if loads is None else 3), 1.0)
-    spread = max(float(np.sqrt(within)), LIMITS.levels_surer * usual)
-    centres = [float(np.average(levels[part] - slope * load[part], weights=weights[part])) for part in (low, high)]
-    apart = next(least for runs, least in LIMITS.levels_apart if len(known) >= runs)
-    if centres[1] - centres[0] < apart * spread:
-        return None
-    there = np.zeros(len(levels), bool)
-    there[high if abs(centres[1]) >= abs(centres[0]) else low] = True
-    return there
-
-
-def _two_lines(
-    values: FloatArray, load: FloatArray, weights: FloatArray, low: np.ndarray, high: np.ndarray
-) -> tuple[float, float]:
-    """Weighted sum of squares about two levels that share a slope over the load, and that slope."""
-    own, off = (
-        np.concatenate([each[part] - np.average(each[part], weights=weights[part]) for part in (low, high)])
-        for each in (load, values)
-    )
-    weight = weights[np.concatenate([low, high])]
-    slope = float(own @ (weight * off)) / max(float(own @ (weight * own)), 1e-300)
-    return float(weight @ (off - slope * own) ** 2), slope

@@ -189,10 +189,11 @@ def test_fits_of_many_at_once_are_those_of_one_after_the_other():
     """Of as many columns or more, beside something and alone; what is known already is not asked for again."""
     problem = problem_with(np.full(RUNS, 1.0))
     blocks, rng = problem.blocks, np.random.default_rng(7)
-    more = np.column_stack([blocks.x, blocks.x[:, 1] ** 2, rng.standard_normal((len(blocks.y), 4))])
+    others = blocks.y[:, None] * np.array([0.3, 0.5, 0.2, 0.1, 0.4]) + rng.standard_normal((len(blocks.y), 5))
+    more = np.column_stack([blocks.x, others])
     more = replace(blocks, x=more, weight=1.0 / (1.0 + blocks.run))
     slots = (EFFECT, *(Slot(name, name, at) for name, at in (("b", (2,)), ("c", (3, 4)), ("d", (5,)), ("e", (4, 6)))))
-    lower, upper = np.array([-0.1, 0.0, 0.0, -1.0, 0.0, 0.0, 0.0]), np.array([0.1, 9.0, 0.3, 1.0, 5.0, 0.0, 0.01])
+    lower, upper = np.array([-0.1, 0.0, 0.0, -1.0, 0.0, 0.0, 0.0]), np.array([0.1, 9.0, 0.3, 1.0, 5.0, 0.2, 0.01])
     layout = replace(problem.layout, slots=slots, scales=np.ones(7), lower=lower, upper=upper)
     problem = replace(problem, layout=layout, blocks=more, grams=grams(more))
     for rest in ((), (slots[2],)):
@@ -206,6 +207,7 @@ def test_fits_of_many_at_once_are_those_of_one_after_the_other():
             assert loss == pytest.approx(wanted[0], rel=1e-9)
             np.testing.assert_allclose(beta, wanted[1], rtol=1e-7, atol=1e-9)
             assert not beta.flags.writeable
+            assert beta[-1] > 0.0
         many.problem = asked
         many.fit_beside(rest, others)
         assert all(many._fits[each] is old for each, old in zip(columns, found, strict=True))

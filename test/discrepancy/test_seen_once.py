@@ -105,6 +105,15 @@ def test_what_hangs_on_another_column_is_seen_again(crane_150t, name):
     assert seeing.see(run, crane_150t, True, first).motion is not first.motion
 
 
+def test_of_motors_that_nobody_asked_for_nothing_is_held(crane_150t):
+    """An electric drive has none, and the columns of the run as it was would stay for ever."""
+    run = runs_with(917, "quiet", length=0.3)[0]
+    first = seeing.see(run, crane_150t)
+    assert not seeing.see(_changed(run, **{"main.pressure_a": 1.01}), crane_150t, before=first).known
+    assert first.measured
+    assert seeing.see(_changed(run, **{"main.pressure_a": 1.01}), crane_150t, before=first).known
+
+
 def test_a_hole_in_a_column_that_moves_nothing_is_one_of_the_motion_too(crane_150t):
     """What stands still in the log has not been measured, whatever the speed says meanwhile."""
     run = runs_with(917, "quiet", length=0.3)[0]

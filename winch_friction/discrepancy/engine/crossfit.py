@@ -85,19 +85,16 @@ class CrossFit:
     def train_loss(self, slots: Sequence[Slot]) -> tuple[float, FloatArray]:
         """Loss and coefficients of a fit to all training runs."""
         columns = self.problem.columns(slots)
-        if columns not in self._fits:
-            # beside what the others are without the last: most of their bounds are found already
-            rest = np.empty(0) if not slots else self.train_loss(slots[:-1])[1]
-            self._fits[columns] = self._fit(columns, rest)
+        if columns not in self._fits and slots:
+            self.fit_beside(slots[:-1], slots[-1:])
+        elif columns not in self._fits:
+            start = self.problem.layout.inside(columns)
+            self._fits[columns] = self._with_loss(columns, self.problem.fit(self.total_g, self.total_b, columns, start))
         return self._fits[columns]
-
-    def _fit(self, columns: tuple[int, ...], rest: FloatArray) -> tuple[float, FloatArray]:
-        start = np.concatenate([rest, self.problem.layout.inside(columns[len(rest) :])])
-        return self._with_loss(columns, self.problem.fit(self.total_g, self.total_b, columns, start))
 
     def fit_beside(self, rest: Sequence[Slot], slots: Sequence[Slot]) -> None:
         """Fit every one of these beside the rest to all training runs, those of as many columns at once: what
-        `train_loss` gives of them then is known."""
+        `train_loss` gives of them then is known. Most bounds of the rest are where they are without them."""
         first, start = self.problem.columns(rest), self.train_loss(rest)[1]
         new = dict.fromkeys(own.columns for own in slots if (*first, *own.columns) not in self._fits)
         for width in {len(columns) for columns in new}:

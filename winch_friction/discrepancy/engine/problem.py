@@ -205,7 +205,7 @@ class Problem:
         near the answer saves steps and changes nothing else."""
         index = np.asarray(columns)
         h, rhs = self._held(g[np.ix_(index, index)][None], b[index][None], index)
-        return bounded_fit(h[0], rhs[0], self.layout.lower[index], self.layout.upper[index], start)
+        return bounded_fits(h, rhs, self.layout.lower[index], self.layout.upper[index], start)[0]
 
     def fits(self, g: FloatArray, b: FloatArray, columns: Sequence[int], start: FloatArray) -> FloatArray:
         """The same of several sums at once, `g` (k, c, c) and `b` (k, c): (k, columns)."""

@@ -74,8 +74,8 @@ def uniform(run: Run, before: tuple[Run, Grid] | None = None) -> Grid:
             f"{run.name}: column 'time' leaps by {steps[leap]:.4g} s at {run.time[leap]:.14g} s, and there are "
             f"{len(time)} samples of {time[-1]:.4g} s: split the file there"
         )
-    old = before[0].columns if before is not None and before[0].time is run.time else {}
-    known = before[1].columns if before is not None and old else {}
+    told = before if before is not None and before[0].time is run.time else None
+    old, known = ({}, {}) if told is None else (told[0].columns, told[1].columns)
     grid = known["time"] if known else np.arange(0.0, time[-1] + 0.5 * dt, dt)
     even = len(grid) == len(time) and np.abs(grid - time).max() < 1e-3 * dt
     valid = np.ones(len(grid), bool)

@@ -173,7 +173,7 @@ def prepare(
     `seen` of this run does not depend on the model; of one as another saw it `before`, what is the same is held once.
     Raises `InputError` for a run that is too short or lacks a channel that the torque balance needs.
     """
-    seen = see(run, crane, turning, before.seen if before is not None and seen is None else seen)
+    seen = see(run, crane, turning, before.seen if before is not None else seen)
     grid, motion = seen.grid, seen.motion
     balancing = Balancing(run, crane, model, seen, accounted or Accounted())
     swing, hanging, balance = _on_wire(balancing, load_seen(seen, crane, load), mode, wire)

@@ -235,8 +235,10 @@ def see(run: Run, crane: Crane, turning: bool = False, before: Seen | None = Non
     moves = all(grid.columns.get(name) is before.grid.columns.get(name) for name in MOTION)
     same = how and moves and np.array_equal(grid.valid, before.grid.valid)
     motion = before.motion if same else motion_of(grid, crane, run.name, turning)
-    groups = before.__dict__["measured"][0] if "measured" in before.__dict__ else ()
-    return Seen(run, crane, turning, grid, motion, [KnownGroups(groups, before.grid.columns, before.motion.window)])
+    known = []
+    if "measured" in before.__dict__:  # else nothing is known, and its columns need not be held
+        known = [KnownGroups(before.measured[0], before.grid.columns, before.motion.window)]
+    return Seen(run, crane, turning, grid, motion, known)
 
 
 def shared(own: Any, other: Any) -> Any:

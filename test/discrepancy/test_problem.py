@@ -101,6 +101,19 @@ def test_without_data_a_base_parameter_returns_to_its_seed(shift, value):
     assert beta == pytest.approx([value], abs=1e-6)
 
 
+@pytest.mark.parametrize("square", [4.0, 1e-6])
+def test_a_column_is_held_by_a_millionth_of_itself_and_one_without_data_is_nothing(square):
+    """Whichever way it is fitted: by itself, with folds left out, or beside others."""
+    problem, start = known_problem(), np.array([0.0, 0.1])
+    g, b = np.diag([0.0, square]), np.array([0.0, 2.0 * square])
+    held = 2.0 * square / (square * (1.0 + 1e-6) + 1e-9)
+    assert problem.fit(g, b, (0, 1), start)[1] == pytest.approx(held, rel=1e-12)
+    assert problem.fits(g[None], b[None], (0, 1), start)[0, 1] == pytest.approx(held, rel=1e-12)
+    assert problem.fits_beside(g, b, (0,), [(1,)], start[:1])[0, 1] == pytest.approx(held, rel=1e-12)
+    nothing = np.zeros((2, 2)), np.zeros(2)
+    assert problem.fit(*nothing, (0, 1), start) == pytest.approx([0.0, 0.0], abs=1e-12)
+
+
 def test_a_deviation_is_the_priors_without_data_and_thinned_by_its_weight_with_them():
     """Of N blocks of one of noise each N / 10 count."""
     blind, told = known_problem(weight=1e-9), known_problem(weight=1.0)

@@ -105,6 +105,19 @@ def test_what_hangs_on_another_column_is_seen_again(crane_150t, name):
     assert seeing.see(run, crane_150t, True, first).motion is not first.motion
 
 
+def test_the_same_columns_over_another_time_are_another_grid(crane_150t):
+    """What a log was stamped with is corrected as well: then nothing of it is where it was."""
+    run = runs_with(917, "quiet", length=0.3)[0]
+    kept = np.delete(np.arange(len(run)), [70, 71, 150])
+    run = replace(run, columns={name: values[kept] for name, values in run.columns.items()})
+    first = seeing.see(run, crane_150t)
+    other = _changed(run, time=1.01)
+    again, anew = seeing.see(other, crane_150t, before=first), seeing.see(other, crane_150t)
+    for name, values in anew.grid.columns.items():
+        np.testing.assert_array_equal(again.grid.columns[name], values)
+    np.testing.assert_array_equal(again.motion.acceleration, anew.motion.acceleration)
+
+
 def test_of_motors_that_nobody_asked_for_nothing_is_held(crane_150t):
     """An electric drive has none, and the columns of the run as it was would stay for ever."""
     run = runs_with(917, "quiet", length=0.3)[0]

@@ -121,8 +121,8 @@ def test_the_amount_of_a_locked_run_is_told_by_its_first_half_alone(monkeypatch)
     # every run has a date of its own, so that what wears by any law of it, as to a new seal, is one with a brake
     assert (found.name, worn.name) == ("brake_drag", "wear_drift")
     assert worn.term.table.weights == found.term.table.weights
-    # by date, which here runs backwards, and none that drives
-    assert found.term.table.weights == (0.25, 0.5, 0.75, 0.25, 0.5, 1.0, 0.0, 0.125)
+    # by date, which here runs backwards, beyond the least: a brake drives nothing
+    assert found.term.table.weights == (0.4, 0.6, 0.8, 0.4, 0.6, 1.0, 0.0, 0.3)
     windows = found.term.table.knots[0][1]
     assert all(windows[2 * k] < runs[7 - k].start < runs[7 - k].start + 60.0 < windows[2 * k + 1] for k in range(8))
     assert catalogue.another_in_each_run(set(), runs, SimpleNamespace(term_names=())) == []

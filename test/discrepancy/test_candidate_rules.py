@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from winch_friction.discrepancy.candidates import creep, families, feedback, friction, geometry, signals
+from winch_friction.discrepancy.candidates import creep, families, feedback, friction, geometry, lateness
 from winch_friction.discrepancy.candidates.candidate import ALL, BALANCING, Candidate, ParameterEstimate, Shape, Sides
 from winch_friction.discrepancy.catalogue import all_candidates
 from winch_friction.discrepancy.thresholds import LIMITS
@@ -51,19 +51,19 @@ def test_what_drags_more_one_way_acts_one_way_in_part(name, law, opposing):
 def test_a_delay_of_each_side_lies_within_a_quarter_of_itself_in_typical_sizes():
     """Of 50 ms; pressures that are late are a speed that is early."""
     run = SimpleNamespace(dt=0.05, channels={})
-    shapes = {each.label: each for each in signals._delay_shapes([run])}
-    assert len(shapes) == 2 * len(signals.DELAYS)
+    shapes = {each.label: each for each in lateness._delay_shapes([run])}
+    assert len(shapes) == 2 * len(lateness.DELAYS)
     speed, pressures = (shapes[f"{side} late, about 100 ms"] for side in ("speed", "pressures"))
     assert speed.bounds == pytest.approx((1.6, 2.5))
-    assert speed.values == {"ahead": 0.1, "behind": 0.0, "late": signals.SPEED}
+    assert speed.values == {"ahead": 0.1, "behind": 0.0, "late": lateness.SPEED}
     assert pressures.bounds == pytest.approx((-2.5, -1.6))
-    assert pressures.values == {"ahead": 0.0, "behind": 0.1, "late": signals.PRESSURES}
+    assert pressures.values == {"ahead": 0.0, "behind": 0.1, "late": lateness.PRESSURES}
 
 
 def test_the_slowest_log_says_which_delays_are_looked_for():
     fast, slow, slower = (SimpleNamespace(dt=dt, channels={}) for dt in (0.02, 0.05, 0.1))
-    assert any(each.label.startswith("small") for each in signals._delay_shapes([fast, fast]))
-    assert not any(each.label.startswith("small") for each in signals._delay_shapes([fast, slow]))
+    assert any(each.label.startswith("small") for each in lateness._delay_shapes([fast, fast]))
+    assert not any(each.label.startswith("small") for each in lateness._delay_shapes([fast, slow]))
 
 
 @pytest.mark.parametrize(("slowest", "least"), [
@@ -72,9 +72,9 @@ def test_the_slowest_log_says_which_delays_are_looked_for():
 def test_a_slow_log_shows_the_delays_of_a_sample_and_more(slowest, least):
     """Below 18 Hz none was looked for, and 0.2 s at 15 Hz, three samples, stayed unexplained."""
     runs = [SimpleNamespace(dt=dt, channels={}) for dt in (0.02, slowest)]
-    steps = [each.values["ahead"] for each in signals._delay_shapes(runs) if each.label.startswith("speed late")]
-    assert steps == [each for each in signals.DELAYS if least is not None and each >= least]
-    assert (signals._too_slow(runs) is None) is (least is not None)
+    steps = [each.values["ahead"] for each in lateness._delay_shapes(runs) if each.label.startswith("speed late")]
+    assert steps == [each for each in lateness.DELAYS if least is not None and each >= least]
+    assert (lateness._too_slow(runs) is None) is (least is not None)
 
 
 # -- radius and inertia

@@ -10,7 +10,8 @@ from gap_rig import gap_of, names_of, runs_with
 from winch_friction.discrepancy.answer import GapOptions
 from winch_friction.discrepancy.candidates.candidate import BALANCING, ParameterEstimate, Shape, Sides
 from winch_friction.discrepancy.candidates.feedback import bowed_columns, feedback_candidates
-from winch_friction.discrepancy.candidates.signals import DELAY, SPEED, signal_candidates
+from winch_friction.discrepancy.candidates.lateness import DELAY, SPEED
+from winch_friction.discrepancy.candidates.signals import signal_candidates
 from winch_friction.discrepancy.detectors.delay import without_delay
 from winch_friction.discrepancy.engine.blocks import Slot
 from winch_friction.discrepancy.estimates import agreed, in_file, of_part, together
@@ -25,6 +26,7 @@ from winch_friction.physics.channels import CM3_PER_REV
 from winch_friction.physics.corrections import corrected
 from winch_friction.physics.friction.correction import Correction
 from winch_friction.records.crane_file import load_crane
+from winch_friction.records.model_file import load_model, save_model
 
 
 @pytest.mark.long
@@ -148,6 +150,19 @@ def test_a_delay_that_fills_up_and_starts_again_is_taken_out_of_the_runs():
     assert own.name in ("signal_buffer", "pressure_buffer")
     assert own.value == pytest.approx(0.15, abs=0.01)
     assert 7.9 < own.time_constant < 60.2
+
+
+@pytest.mark.long
+def test_a_delay_of_no_known_course_is_drawn_and_its_file_takes_it_out_of_the_runs(tmp_path):
+    """It goes to and fro between nothing and 150 ms, as the load of a network does: no law of the package."""
+    found = gap_of(919, "elastic_still", ("signal_delay:wanders", 1.0))
+    assert names_of(found) == [{"signal_delay"}]
+    assert found.holdout.size_after.value < 0.2 * found.holdout.size_before.value
+    (own,) = load_model(save_model(found.model, tmp_path / "model.yaml")).corrections
+    time, share = np.transpose(own.course)
+    at = np.linspace(0.0, 60.0, 50)
+    drawn, true = own.value * np.interp(at, time, share), 0.15 * np.sin(np.pi * at / 70.0) ** 2
+    assert np.sqrt(np.mean((drawn - true) ** 2)) < 0.02
 
 
 def test_a_suspected_delays_column_is_what_the_runs_are_without_it(crane_150t, crane2_model):

@@ -160,6 +160,14 @@ def test_two_levels_may_follow_the_load_alike_but_a_law_of_the_load_is_no_level(
         assert np.mean(seeming) < 0.01, spread
 
 
+def test_levels_that_rounding_alone_has_made_are_none():
+    """A search ended with "Weights sum to zero": in most runs there was nothing of a candidate, to the last digit."""
+    rng = np.random.default_rng(0)
+    levels, deviations = 1e-15 * rng.standard_normal(FULL), 1e-14 * (np.arange(FULL) % 3 == 0)
+    assert two_levels(levels, deviations) is None
+    assert two_levels(levels + (np.arange(FULL) < 4), deviations) is None
+
+
 def test_a_run_of_which_little_is_known_hides_no_two_levels():
     """A light load says little of a displacement: between the levels of the others its own is no third one."""
     rng = np.random.default_rng(0)
@@ -407,13 +415,15 @@ def test_what_a_signal_tells_is_no_candidate(monkeypatch):
 
 
 def test_a_drag_of_each_run_has_its_windows_by_date_and_its_amounts_as_shares_of_the_largest(monkeypatch):
-    """A brake drives nothing: what seems to is none of it."""
+    """A brake drives nothing: what seems to is what the base has too much of, in every run alike."""
     made = []
     monkeypatch.setattr("winch_friction.discrepancy.run_states._drag", lambda *each: made.append(each) or each)
     runs = dated((200.0, 10.0), (0.0, 10.0), (100.0, 10.0))
-    in_each_run(runs, np.array([1.0, 3.0, -2.0]))
     windows = ((-1.0, 11.0), (99.0, 111.0), (199.0, 211.0))
-    assert made == [(cause, windows, EACH_RUN, (1.0, 0.0, 0.3333)) for cause in ("brake_drag", "wear_drift")]
+    for levels, weights in (([1.0, 3.0, -2.0], (1.0, 0.0, 0.6)), ([1.0, 3.0, 2.0], (1.0, 0.6667, 0.3333))):
+        made.clear()
+        in_each_run(runs, np.array(levels))
+        assert made == [(cause, windows, EACH_RUN, weights) for cause in ("brake_drag", "wear_drift")]
 
 
 @pytest.mark.parametrize("pause", [1e-3, 0.4, 1.0, 2.0, 5.0])

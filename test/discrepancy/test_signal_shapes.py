@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from winch_friction.discrepancy.candidates import feedback
+from winch_friction.discrepancy.candidates import feedback, lateness
 from winch_friction.discrepancy.candidates import signals as module
 from winch_friction.discrepancy.candidates.candidate import (
     ALL,
@@ -23,14 +23,10 @@ from winch_friction.discrepancy.candidates.candidate import (
     own_group_shapes,
 )
 from winch_friction.discrepancy.candidates.creep import creeping_candidates, creeping_columns, gathering_columns
+from winch_friction.discrepancy.candidates.lateness import DELAYS, PRESSURES, SMALL_DELAY, SPEED, delay_columns
 from winch_friction.discrepancy.candidates.signals import (
-    DELAYS,
-    PRESSURES,
-    SMALL_DELAY,
-    SPEED,
     bent_columns,
     bowed_warm_columns,
-    delay_columns,
     scale_columns,
     signal_candidates,
 )
@@ -195,7 +191,7 @@ def test_a_small_delay_is_looked_for_either_way_alike():
 )  # fmt: skip
 def test_a_delay_of_less_than_a_sample_is_how_a_log_was_made(dt, heave, small):
     """And where no heave is logged, a late speed and early pressures are one thing."""
-    found = module._delay_shapes([run(dt=dt, **({"heave_velocity": 0.0} if heave else {}))])
+    found = lateness._delay_shapes([run(dt=dt, **({"heave_velocity": 0.0} if heave else {}))])
     assert [each.label for each in found if "small" in each.label] == small
     assert len(found) == len(small) + 2 * len(DELAYS)
     for each in found:  # a speed that is late has a positive delay, pressures that are late a negative one
@@ -207,9 +203,9 @@ def test_a_delay_of_less_than_a_sample_is_how_a_log_was_made(dt, heave, small):
 @pytest.mark.parametrize(("late", "name", "value"), [(SPEED, "signal_delay", 0.1), (PRESSURES, "pressure_delay", -0.1)])
 def test_pressures_that_are_late_are_corrected_as_such(late, name, value):
     found = {"tau": ParameterEstimate(0.1, 0.01, "s")}
-    (own,) = module._to_delay(found, Shape("", {"late": late}), SIDES)
+    (own,) = lateness._to_delay(found, Shape("", {"late": late}), SIDES)
     assert (own.name, own.value, own.std) == (name, value, 0.01)
-    (clock,) = module._to_delay(found, Shape("", {"late": late, "by_time": 1.0}), SIDES)  # by 0.1 s after 100 s
+    (clock,) = lateness._to_delay(found, Shape("", {"late": late, "by_time": 1.0}), SIDES)  # by 0.1 s after 100 s
     assert (clock.name, clock.value) == (name.replace("delay", "clock"), pytest.approx(value / 100.0))
 
 

@@ -9,7 +9,7 @@ import pytest
 from winch_friction.discrepancy import search
 from winch_friction.discrepancy.answer import AMBIGUOUS, MISSING, NOTHING, UNEXPLAINED, Verdict
 from winch_friction.discrepancy.candidates.candidate import MOVING, REVERSALS, Candidate, Shape
-from winch_friction.discrepancy.candidates.signals import DELAY, SMALL, tau
+from winch_friction.discrepancy.candidates.lateness import DELAY, SMALL, tau
 from winch_friction.discrepancy.engine.blocks import Slot
 from winch_friction.discrepancy.engine.selection import Selection
 from winch_friction.discrepancy.search import ReversalFinding, long_delay, too_short

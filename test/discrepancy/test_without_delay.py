@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from winch_friction.discrepancy.candidates.candidate import Candidate, Shape
-from winch_friction.discrepancy.candidates.signals import PRESSURES, SMALL_DELAY, SPEED, tau
+from winch_friction.discrepancy.candidates.lateness import PRESSURES, SMALL_DELAY, SPEED, tau
 from winch_friction.discrepancy.detectors import delay
 from winch_friction.discrepancy.detectors.delay_course import passing_delay
 from winch_friction.discrepancy.engine.blocks import Slot
@@ -346,3 +346,50 @@ def test_a_passing_delay_is_told_by_the_training_runs():
     for run in still:
         run.gap, run.name = run.gap * 100.0, "locked"
     assert passing("backlog", SPEED, more=still) == "speed"
+
+
+# -- a delay by a course that the data draw
+WANDERED = ((0.0, 0.3), (35.0, 0.0), (70.0, 1.0), (95.0, 0.9), (140.0, 0.1), (200.0, 0.5))
+
+
+def wandering(late, seed, course=WANDERED, size=0.12):
+    """The same run with a delay that no known course describes."""
+    run = logged("stays", late, seed=seed)
+    sign = 1.0 if late == SPEED else -1.0
+    share = np.interp(run.time, *np.transpose(course))
+    noise = np.random.default_rng(seed + 100).normal(0.0, 1.0, len(run.time))
+    run.gap = np.interp(run.time + sign * size * share, run.time, run.predicted) - run.predicted + noise
+    return run
+
+
+@pytest.mark.parametrize(("late", "sign"), [(SPEED, 1.0), (PRESSURES, -1.0)])
+def test_a_delay_of_no_known_course_is_drawn(late, sign):
+    shapes = delay._changing([wandering(late, seed) for seed in range(4)], 0.06 * sign)
+    assert [each.values["late"] for each in shapes] == [late] * 3
+    (own,) = delay._without(shapes[0], FrictionModel("m", (), ())).corrections
+    assert own.name == ("signal_course" if late == SPEED else "pressure_course")
+    time, share = np.transpose(own.course)
+    assert time == pytest.approx(shapes[0].values["drawn_in"] * np.arange(len(time)))
+    assert 190.0 < time[-1] < 250.0
+    at = np.linspace(0.0, 190.0, 40)
+    drawn, true = own.value * np.interp(at, time, share), 0.12 * np.interp(at, *np.transpose(WANDERED))
+    assert np.sqrt(np.mean((drawn - true) ** 2)) < 0.01
+    assert shapes[0].label.startswith(f"{'speed' if late == SPEED else 'pressures'} late by a course of its own")
+    assert f"ms at most, by points {shapes[0].values['drawn_in']:.3g} s apart" in shapes[0].label
+
+
+def test_a_course_is_no_ones_where_every_run_has_another():
+    """Drawn from one half of the runs it tells nothing of the others."""
+    turned = [tuple((time, share[k]) for time, share in zip((0.0, 50.0, 100.0, 150.0, 200.0), (
+        (0.0, 1.0), (1.0, 0.0), (0.0, 1.0), (1.0, 0.0), (0.0, 1.0)), strict=True)) for k in (0, 1)]  # fmt: skip
+    alike = [wandering(SPEED, seed, turned[0]) for seed in range(4)]
+    assert "drawn_in" in delay._changing(alike, 0.06)[0].values
+    runs = [wandering(SPEED, seed, turned[seed % 2]) for seed in range(4)]
+    assert all("drawn_in" not in each.values for each in delay._changing(runs, 0.06))
+    assert all("drawn_in" not in each.values for each in delay._changing(alike[:1], 0.06))
+
+
+def test_nothing_but_noise_has_no_course():
+    for seed in range(20):
+        runs = [wandering(SPEED, 10 * seed + k, size=0.0) for k in range(4)]
+        assert all("drawn_in" not in each.values for each in delay._changing(runs, 0.06)), seed

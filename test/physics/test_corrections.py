@@ -9,7 +9,7 @@ import yaml
 from scipy.signal import lsim
 
 from winch_friction.physics.channels import BAR, CM3_PER_REV, GRAVITY
-from winch_friction.physics.corrections import corrected, corrected_crane, unswung
+from winch_friction.physics.corrections import corrected, corrected_crane, lateness, unswung
 from winch_friction.physics.errors import InputError
 from winch_friction.physics.fluid import relative_viscosity, relaxed_compression
 from winch_friction.physics.friction.correction import Correction
@@ -45,6 +45,7 @@ def truth():
     return Run("truth", columns)
 
 
+DRAWN = ((2.0, 0.25), (20.0, 1.0), (45.0, 0.5))  # s since the run began, share
 BENDS_AT = {"Pa": 210.0 * BAR, "m^3/rad": 140.0 * CM3_PER_REV}
 
 
@@ -55,6 +56,7 @@ def ties(name):
     more |= {"during": ((-20.0, 30.0),)} if own.grows else {}
     more |= {"beyond": BENDS_AT[own.bends_in]} if own.bends_in else {}
     more |= {"beyond": 215.0 * CM3_PER_REV} if own.action is Action.S_SHAPE else {}
+    more |= {"course": DRAWN} if own.course == "drawn" else {}
     return more | ({"time_constant": 60.0} if own.has_time_constant else {})
 
 
@@ -69,6 +71,7 @@ def fullness(correction, time):
     return {
         "delay": lambda: np.ones_like(time), "clock": lambda: time, "backlog": lambda: np.exp(-time / over),
         "buffer": lambda: time / over - np.floor(time / over),
+        "course": lambda: np.interp(time, [2.0, 20.0, 45.0], [0.25, 1.0, 0.5]),
     }[of]()  # fmt: skip
 
 
@@ -597,6 +600,8 @@ IS = {
     "pressure_buffer": ("signal", "s", 0.1, 0.0, 0.5, DRIVE, (), OF_BACKLOG | {"course": "buffer"}),
     "signal_backlog": ("signal", "s", 0.1, -0.5, 0.5, SPEEDS, (), OF_BACKLOG),
     "pressure_backlog": ("signal", "s", 0.1, -0.5, 0.5, DRIVE, (), OF_BACKLOG),
+    "signal_course": ("signal", "s", 0.1, 0.0, 0.5, SPEEDS, (), NOT_LIVE | {"course": "drawn"}),
+    "pressure_course": ("signal", "s", 0.1, 0.0, 0.5, DRIVE, (), NOT_LIVE | {"course": "drawn"}),
     "signal_filter": ("signal", "s", 0.05, 0.0, 0.5, SPEEDS, (), NOT_LIVE),
     "pressure_filter": ("signal", "s", 0.05, 0.0, 0.5, DRIVE, (), NOT_LIVE),
     "layer_radius": ("geometry", "m", 0.06, -0.5, 0.5, (), (), {"by_layer": True}),
@@ -648,6 +653,31 @@ def test_a_sigma_below_zero_and_a_time_of_nothing_are_none(more, said):
     with pytest.raises(InputError, match=said):
         Correction("accumulator_warmth", 0.01, **{"time_constant": 60.0} | more)
     assert Correction("accumulator_warmth", 0.01, std=0.0, time_constant=60.0).std == 0.0
+
+
+@pytest.mark.parametrize(
+    ("name", "more", "said"),
+    [
+        ("signal_delay", {"course": DRAWN}, "'signal_delay' has no course"),
+        ("signal_course", {}, "'signal_course' needs course: points"),
+        ("signal_course", {"course": ((-1.0, 0.0), (5.0, 1.0))}, "times from 0 s and shares of -1 to 1"),
+        ("signal_course", {"course": ((0.0, 0.0), (5.0, 1.1))}, "times from 0 s and shares of -1 to 1"),
+        ("signal_course", {"course": ((0.0, math.nan), (5.0, 1.0))}, "times from 0 s and shares of -1 to 1"),
+        ("signal_course", {"course": ((0.0, 0.0), (math.inf, 1.0))}, "times from 0 s and shares of -1 to 1"),
+        ("signal_course", {"course": ((5.0, 0.0), (0.0, 1.0))}, "in turn and more than 1 s, twice the largest delay"),
+        ("signal_course", {"course": ((0.0, 0.0), (1.0, 1.0))}, "in turn and more than 1 s, twice the largest delay"),
+        ("signal_course", {"course": ((0.0, 0.0), (0.4, 1.0)), "upper": 0.2}, "more than 0.4 s, twice the largest"),
+    ],
+)
+def test_a_delays_course_has_points_between_which_nothing_is_logged_before_what_came_before(name, more, said):
+    with pytest.raises(InputError, match=said):
+        Correction(name, 0.05, **more)
+    assert Correction("signal_course", 0.1, upper=0.2, course=((0.0, -1.0), (0.41, 1.0))).course[1] == (0.41, 1.0)
+
+
+def test_beyond_its_points_a_delay_is_what_it_is_at_the_nearer_end():
+    told = lateness("drawn", np.array([0.0, 2.0, 11.0, 45.0, 90.0]), None, DRAWN)
+    assert told == pytest.approx([0.25, 0.25, 0.625, 0.5, 0.5])
 
 
 def test_a_bend_that_begins_nowhere_is_none():

@@ -22,6 +22,7 @@ def every_correction():
         more = {"time_constant": 45.0} if own.has_time_constant else {}
         more |= {"during": ((1.7e9, 1.8e9),)} if own.grows else {}
         more |= {"beyond": {"Pa": 150 * BAR, "m^3/rad": 100 * CM3_PER_REV}[own.bends_in]} if own.bends_in else {}
+        more |= {"course": ((0.0, 0.0), (30.0, 1.0), (70.0, -0.25))} if own.course == "drawn" else {}
         lower = 0.0 if own.parameter.lower == 0.0 else 0.5 * own.parameter.lower
         value = own.parameter.typical / 3.0
         found.append(Correction(name, value, 0.1 * value, lower, 2.0 * own.parameter.typical, "a test", **more))
@@ -91,6 +92,17 @@ def test_std_and_bounds_have_the_unit_of_the_value():
         ({"pressure_offset": [{"value": 3, "unit": "bar", "groups": []}]}, r"pressure_offset\[1\]: groups must be"),
         ({"layer_radius": {"value": 3, "unit": "mm", "layers": ["6"]}}, "layers must be a list"),
         ({"accumulator_heat": {"value": 0.5, "unit": "1"}}, "needs a time_constant"),
+        (
+            {"signal_course": {"value": 0.1, "unit": "s"}},
+            r"'signal_course' needs course: points \[s since the run began",
+        ),
+        ({"signal_course": {"value": 0.1, "unit": "s", "course": 3}}, "signal_course: course must be a list of points"),
+        ({"signal_course": {"value": 0.1, "unit": "s", "course": [[0, 1]]}}, "course must be a list of points"),
+        ({"signal_course": {"value": 0.1, "unit": "s", "course": [[0, 1], [9]]}}, "course must be a list of points"),
+        (
+            {"signal_course": {"value": 0.1, "unit": "s", "course": [[0, 1], ["a", 1]]}},
+            "course must be a finite number",
+        ),
     ],
 )
 def test_what_is_not_a_correction_is_refused_in_one_line(section, message):

@@ -124,6 +124,7 @@ def test_radius_and_inertia_are_the_corrected_cranes(ahc, crane, model):
 @pytest.mark.parametrize("name", OF_THE_PLANT)
 def test_what_the_plant_makes_itself_is_refused_by_name(name, ahc, crane, model):
     more = {"time_constant": 60.0} if DECLARED[name].has_time_constant else {}
+    more |= {"course": ((0.0, 0.0), (60.0, 1.0))} if DECLARED[name].course == "drawn" else {}
     with pytest.raises(InputError, match=f"{name}.*--hide"):
         Simulator(ahc, crane, wrong(model, name, **more))
 

@@ -14,7 +14,8 @@ from scipy.special import chdtrc, ndtri
 
 from winch_friction.discrepancy.answer import Side, keeps_something, steady_excess, telling
 from winch_friction.discrepancy.candidates.candidate import Estimates, ParameterEstimate, Sides
-from winch_friction.discrepancy.candidates.signals import DELAY, ZEROS
+from winch_friction.discrepancy.candidates.lateness import DELAY
+from winch_friction.discrepancy.candidates.signals import ZEROS
 from winch_friction.discrepancy.engine import FloatArray
 from winch_friction.discrepancy.engine.blocks import Slot
 from winch_friction.discrepancy.engine.chance import dependences

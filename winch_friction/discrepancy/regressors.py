@@ -19,7 +19,7 @@ from winch_friction.discrepancy.candidates.candidate import (
 )
 from winch_friction.discrepancy.candidates.families import bending
 from winch_friction.discrepancy.candidates.friction import without_memory
-from winch_friction.discrepancy.candidates.signals import SMALL_DELAY, delay_columns
+from winch_friction.discrepancy.candidates.lateness import SMALL_DELAY, delay_columns
 from winch_friction.discrepancy.engine import FloatArray
 from winch_friction.discrepancy.engine.blocks import (
     Means,

@@ -73,7 +73,9 @@ def in_each_run(runs: Sequence[PreparedRun], levels: FloatArray) -> list[Candida
         return []
     order, begins, ends = _by_date(runs)
     windows = tuple(_window(begins, ends, [k], 1.0 / 3.0) for k in range(len(order)))  # those of neighbours never meet
-    weights = tuple(float(f"{max(levels[k], 0.0) / levels.max():.4g}") for k in order)  # a brake drives nothing
+    # a brake drives nothing: what all amounts have alike the model's own friction takes up
+    own = levels - min(float(levels.min()), 0.0)
+    weights = tuple(float(f"{own[k] / own.max():.4g}") for k in order)
     return [_drag(cause, windows, EACH_RUN, weights) for cause in (BRAKE, WEAR)]
 
 
@@ -202,6 +204,8 @@ def two_levels(levels: FloatArray, deviations: FloatArray, loads: FloatArray | N
     order = known[np.argsort(levels[known])]
     load = np.zeros(len(levels)) if loads is None else loads - loads[known].mean()
     usual = float(np.median(deviations[known]))
+    if usual <= 0.0:  # of columns that rounding alone fits
+        return None
     weights = np.minimum(1.0, (usual / np.maximum(deviations, max(usual, 1e-300))) ** 2)
     parts = [(order[:k], order[k:]) for k in range(2, len(order) - 1)]
     parts = [each for each in parts if _well_known(levels, deviations, usual, each) >= FEWEST_OF_A_LEVEL]

@@ -16,7 +16,7 @@ from winch_friction.discrepancy.answer import MISSING, NOTHING, UNEXPLAINED, Eff
 from winch_friction.discrepancy.candidates.candidate import MOVING, REVERSALS, Candidate, Estimates, Shape, Untestable
 from winch_friction.discrepancy.candidates.creep import GAS
 from winch_friction.discrepancy.candidates.friction import blurred_travel
-from winch_friction.discrepancy.candidates.signals import DELAY, SMALL, tau
+from winch_friction.discrepancy.candidates.lateness import DELAY, SMALL, tau
 from winch_friction.discrepancy.catalogue import at_hand, testable
 from winch_friction.discrepancy.detectors import flow_balance
 from winch_friction.discrepancy.detectors import ripple as angle

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from winch_friction.discrepancy.answer import AMBIGUOUS, MISSING, Verdict
-from winch_friction.discrepancy.candidates.signals import DELAY
+from winch_friction.discrepancy.candidates.lateness import DELAY
 from winch_friction.discrepancy.catalogue import testable
 from winch_friction.discrepancy.engine.blocks import Slot
 from winch_friction.discrepancy.engine.chance import least_part

@@ -185,7 +185,7 @@ def _delay(columns: Columns, run: Run, c: Correction, crane: Crane) -> Columns:
     time, late = columns["time"], _late(columns, run, c)
     if not late or len(time) < 2:
         return columns
-    happened = time - c.value * lateness(c.declared.course, time - time[0], c.time_constant)
+    happened = time - c.value * lateness(c.declared.course, time - time[0], c.time_constant, c.course)
     inside = (happened[0] <= time) & (time <= happened[-1])
     if inside.sum() < 2:
         raise InputError(f"{run.name}: too short for a {c.name} of {c.value:g} s")
@@ -193,9 +193,14 @@ def _delay(columns: Columns, run: Run, c: Correction, crane: Crane) -> Columns:
     return {name: values[inside] for name, values in (columns | shifted).items()}
 
 
-def lateness(course: str, since: FloatArray, time_constant: float | None) -> FloatArray:
+def lateness(
+    course: str, since: FloatArray, time_constant: float | None, drawn: Sequence[tuple[float, float]] = ()
+) -> FloatArray:
     """How much of a delay there is, `since` s from a run's beginning: all of it; of a `clock` that drifts so much per
-    second; of a `buffer` what has come in since it was emptied; of a `backlog` what is not worked off."""
+    second; of a `buffer` what has come in since it was emptied; of a `backlog` what is not worked off; of one that is
+    `drawn` what its points say."""
+    if drawn:
+        return np.interp(since, *np.transpose(drawn))
     if time_constant is None:
         return since if course == "clock" else np.ones_like(since)
     return np.mod(since / time_constant, 1.0) if course == "buffer" else np.exp(-since / time_constant)

@@ -63,6 +63,7 @@ def _correction(name: str, section: Section) -> Correction:
     fields = {key: number(key) for key in ("std", "lower", "upper")}
     groups, layers, source = _names(section, "groups", str), _names(section, "layers", int), section.text("source", "")
     during, beyond = _windows(section), section.get("beyond") if "beyond" in section else None
+    course = _course(section)
     section.close()
     time_constant = None if tau is None else as_quantity(tau, "s", f"{section.where}: time_constant")
     if beyond is not None:
@@ -70,7 +71,7 @@ def _correction(name: str, section: Section) -> Correction:
     try:
         return Correction(
             name, value, source=source, groups=groups, layers=layers, time_constant=time_constant, during=during,
-            beyond=beyond, **fields,
+            beyond=beyond, course=course, **fields,
         )  # fmt: skip
     except InputError as error:
         raise InputError(f"{section.where}: {error}") from None
@@ -106,6 +107,16 @@ def _windows(section: Section) -> tuple[tuple[float, float], ...]:
     return tuple((finite(w[0], where), w[1] if w[1] == float("inf") else finite(w[1], where)) for w in given)
 
 
+def _course(section: Section) -> tuple[tuple[float, float], ...]:
+    """Points of a delay's course, `[[s since the run began, share], ...]`."""
+    if "course" not in section:
+        return ()
+    given, where = section.get("course"), f"{section.where}: course"
+    if not isinstance(given, list) or len(given) < 2 or not all(isinstance(p, list) and len(p) == 2 for p in given):
+        raise InputError(f"{where} must be a list of points [s since the run began, share], found {given!r}")
+    return tuple((finite(p[0], where), finite(p[1], where)) for p in given)
+
+
 def _entry(c: Correction) -> dict[str, Any]:
     entry: dict[str, Any] = {"value": float(c.value), "unit": c.declared.parameter.unit}
     if c.std is not None:
@@ -123,6 +134,8 @@ def _entry(c: Correction) -> dict[str, Any]:
         entry["beyond"] = {"value": float(c.beyond), "unit": c.declared.bends_in}
     if c.during:
         entry["during"] = [list(window) for window in c.during]
+    if c.course:
+        entry["course"] = [list(map(float, point)) for point in c.course]
     return entry
 
 

@@ -11,11 +11,13 @@ from functools import partial
 import numpy as np
 
 from winch_friction.discrepancy.candidates.candidate import Candidate, ParameterEstimate, Shape, Values, correction
-from winch_friction.discrepancy.candidates.signals import (
+from winch_friction.discrepancy.candidates.lateness import (
     CLOCKED,
     DELAY,
     DRAINS_IN,
+    DRAWN_IN,
     FILLS_IN,
+    POINT,
     PRESSURES,
     SETTLES_IN,
     SPEED,
@@ -41,6 +43,7 @@ BY = {
     FILLS_IN: (" by a buffer", " when full, every {:.3g} s"),
     DRAINS_IN: (" by a backlog", " at first, worked off over {:.3g} s"),
     SETTLES_IN: (" more and more", " in the end, after some {:.3g} s"),
+    DRAWN_IN: (" by a course of its own", " at most, by points {:.3g} s apart"),
 }
 
 Key = tuple[str, frozenset[tuple[str, float]]]  # a run's name and the values of a shape
@@ -94,7 +97,8 @@ def _changing(runs: Sequence[PreparedRun], size: float) -> list[Shape]:
     if found.told <= 0.0:
         return []
     late = SPEED if size > 0.0 else PRESSURES
-    return [_shape(found.most * factor, late, **{found.how: found.over}) for factor in COARSELY]
+    points = {f"{POINT}{k:02d}": share for k, share in enumerate(found.shares)}
+    return [_shape(found.most * factor, late, **{found.how: found.over}, **points) for factor in COARSELY]
 
 
 def _gaps_without(given: Given, ways: Iterable[Sequence[Shape]]) -> Mapping[Key, FloatArray]:

@@ -1,14 +1,18 @@
-"""A delay that changes within a run: a buffer fills up and is emptied, a backlog is worked off, one comes to stay."""
+"""A delay that changes within a run: a buffer fills up and is emptied, a backlog is worked off, one comes to stay; or
+it takes a course that only the data know, the same in every run.
+"""
 
 from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
+from scipy.optimize import nnls
 
 from winch_friction.discrepancy.candidates.candidate import Values
-from winch_friction.discrepancy.candidates.signals import (
+from winch_friction.discrepancy.candidates.lateness import (
     DELAY,
     DRAINS_IN,
+    DRAWN_IN,
     FILLS_IN,
     PRESSURES,
     SETTLES_IN,
@@ -33,16 +37,20 @@ APART = 1.1  # times a time constant: what is a tenth slower tells 1 % less of i
 LOOKED_AT = 600.0  # s of each run: enough for a hundredth of a period, and no more of an hour's log than of a test's
 BIN = 0.05  # s, a hundredth of the soonest: within it a delay hardly grows
 EMPTY = 1e-300  # where a column is nothing
+INTERVALS = (3, 5, 8, 12, 18, 27, 40)  # of a drawn course in the longest run: those that tell most of other runs
+AS_MUCH = 0.9  # of what a drawn course tells: a known one that does is it, and the first order of a delay inexact
+UNSEEN = 1e-9  # of the largest, that a point which no run has reached is taken to be nothing by
 
 
 class Course(NamedTuple):
     """How a delay changes from each run's beginning on, the time constant in s, what it is at most in s (of the speed
-    behind the pressures), and what it tells of a gap's square."""
+    behind the pressures), what it tells of a gap's square, and, where it is drawn, the share of each of its points."""
 
     told: float
     how: str
     over: float
     most: float
+    shares: tuple[float, ...] = ()
 
 
 def passing_delay(given: Given, train: tuple[str, ...], cross: CrossFit, selection: Selection) -> Slot | None:
@@ -83,10 +91,47 @@ def course_of(runs: Sequence[PreparedRun], size: float) -> Course:
     near = 1.0 / period + step * np.linspace(-1.0, 1.0, FINER) if period > 0.0 else np.empty(0)
     decays = slowest * APART ** np.arange(max(np.log(1.0 / SOONEST / slowest) / np.log(APART), 0.0))
     most, over, how = max(best(near, FILLS_IN), best(decays, DRAINS_IN), best(decays, SETTLES_IN))
+    drawn = _drawn(runs, behind, float(np.sign(size)))
+    if max(most, told(np.ones_like(time)), told(time)) < AS_MUCH * drawn.told:
+        return drawn
     if most <= max(told(np.ones_like(time)), told(time)):
         return Course(0.0, "", 0.0, 0.0)
     share = _share(how, time, over)
     return Course(most, how, float(over), float(share @ along) / float(share**2 @ square))
+
+
+def _drawn(runs: Sequence[PreparedRun], behind: Values, sign: float) -> Course:
+    """A course through points that are as far apart as tells most of runs from which it was not drawn: of every second
+    run by the others, and the other way. It is straight between them, and makes nothing early."""
+    halves = [_binned(half, behind) for half in (runs[::2], runs[1::2]) if half]
+    best = Course(0.0, "", 0.0, 0.0)
+    if len(halves) < 2:
+        return best
+    size = max(len(time) for time, _, _ in halves)
+    time, lasts = (np.arange(size) + 0.5) * BIN, size * BIN
+    sums = [[np.pad(each, (0, size - len(each))) for each in half[1:]] for half in halves]
+    for apart in sorted({max(lasts / count, SOONEST) for count in INTERVALS}):
+        hats = np.maximum(1.0 - np.abs(time[:, None] / apart - np.arange(np.ceil(lasts / apart) + 1.0)), 0.0)
+        fits = [(hats.T @ (square[:, None] * hats), sign * (hats.T @ along)) for along, square in sums]
+        told = sum(_gain(_heights(*own), *other) for own, other in (fits, fits[::-1]))
+        if told > best.told:
+            heights = _heights(fits[0][0] + fits[1][0], fits[0][1] + fits[1][1])
+            most = float(heights.max(initial=0.0))
+            shares = tuple(float(f"{each / most:.3g}") for each in heights) if most > 0.0 else ()
+            best = Course(float(told), DRAWN_IN, apart, sign * most, shares)
+    return best if best.shares else Course(0.0, "", 0.0, 0.0)
+
+
+def _heights(gram: FloatArray, along: FloatArray) -> FloatArray:
+    """What a course is at its points, s, none below nothing, by least squares."""
+    room = UNSEEN * max(float(np.trace(gram)), EMPTY)
+    root = np.linalg.cholesky(gram + room * np.eye(len(gram))).T
+    return np.asarray(nnls(root, np.linalg.solve(root.T, along))[0])
+
+
+def _gain(heights: FloatArray, gram: FloatArray, along: FloatArray) -> float:
+    """What a course takes off the square of a gap."""
+    return float(2.0 * heights @ along - heights @ gram @ heights)
 
 
 def _share(how: str, since: FloatArray, over: float) -> FloatArray:

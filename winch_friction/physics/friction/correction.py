@@ -1,5 +1,6 @@
 """One correction of a model: an error's value, how well it is known, and what it is restricted to."""
 
+import itertools
 import math
 from dataclasses import dataclass
 from typing import Any
@@ -18,7 +19,9 @@ class Correction:
 
     `groups` and `layers` restrict it (empty: all); `time_constant` s of those that fade or fill; `during` the windows
     of absolute time, s from and to, in which it was there (empty: always; `inf`: since then) or, one window, in which
-    it grew; `beyond` where a bend begins, or an S ends, in its channel's SI unit. Bounds not given: the declared ones.
+    it grew; `beyond` where a bend begins, or an S ends, in its channel's SI unit; `course` of a delay that data have
+    drawn the points (s since the run began, share of the value), between which it is straight and beyond which it
+    stays. Bounds not given: the declared ones.
     Raises `InputError` for a value, bounds or ties that the declaration does not allow.
     """
 
@@ -33,6 +36,7 @@ class Correction:
     time_constant: float | None = None
     during: tuple[tuple[float, float], ...] = ()
     beyond: float | None = None
+    course: tuple[tuple[float, float], ...] = ()
 
     def __post_init__(self) -> None:
         own = self.declared
@@ -58,6 +62,7 @@ class Correction:
             raise InputError(f"correction '{self.name}' {needs}")
         if self.beyond is not None and not 0.0 < self.beyond < float("inf"):
             raise InputError(f"correction '{self.name}': beyond must be above 0 {own.bends_in}, found {self.beyond:g}")
+        self._check_course()
         if self.during and own.kind not in ("signal", "load"):
             raise InputError(f"correction '{self.name}' cannot be tied to a time: the {own.kind} does not change")
         if not all(begin < end for begin, end in self.during):
@@ -98,6 +103,23 @@ class Correction:
     def ends(self) -> float:
         """When it is over, s; `inf` for what has no end or, once grown, stays."""
         return float("inf") if self.declared.grows else max((end for _, end in self.during), default=float("inf"))
+
+    def _check_course(self) -> None:
+        """A course has points, in turn, between which a delay grows more slowly than time goes by."""
+        if (self.declared.course == "drawn") != bool(self.course):
+            needs = (
+                "has no course" if self.course else "needs course: points [s since the run began, share of the value]"
+            )
+            raise InputError(f"correction '{self.name}' {needs}")
+        if not self.course:
+            return
+        time, share = zip(*self.course, strict=True)
+        least = 2.0 * max(map(abs, self.bounds))
+        if time[0] < 0.0 or max(map(abs, share)) > 1.0 or not all(map(math.isfinite, (*time, *share))):
+            raise InputError(f"correction '{self.name}': course must have times from 0 s and shares of -1 to 1")
+        if any(after - before <= least for before, after in itertools.pairwise(time)):
+            apart = f"more than {least:g} s, twice the largest delay"
+            raise InputError(f"correction '{self.name}': the points of its course must be in turn and {apart}, apart")
 
     def _check_bounds(self) -> None:
         own, (lower, upper) = self.declared.parameter, self.bounds

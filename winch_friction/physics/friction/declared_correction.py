@@ -57,7 +57,7 @@ class DeclaredCorrection:
     live: bool = True
     grows: bool = False
     bends_in: str = ""  # unit of `beyond`
-    course: str = ""  # of a delay over a run: clock, buffer, backlog (`lateness`); empty: it stays
+    course: str = ""  # of a delay over a run: clock, buffer, backlog, drawn (`lateness`); empty: it stays
     by_warmth: int = 1  # power of what the oil is above 40 degC, where that is read
 
     @property
@@ -81,7 +81,9 @@ _OIL = ("oil_temperature",)
 def _signal(
     name: str, action: Action, unit: str, typical: float, reach: float, doc: str, *channels: str, **more: Any
 ) -> DeclaredCorrection:
-    lower = 0.0 if action is Action.FILTER or name.endswith("_buffer") else -reach  # neither makes anything early
+    lower = (
+        0.0 if action is Action.FILTER or name.endswith(("_buffer", "_course")) else -reach
+    )  # neither makes anything early
     parameter = Parameter(name, unit, typical, lower=lower, upper=reach, doc=doc)
     by_group = any(channel in (*_PRESSURES, "displacement") for channel in channels) and action not in LATE
     return DeclaredCorrection(name, parameter, "signal", action, channels, by_group=by_group, **more)
@@ -155,6 +157,8 @@ _DECLARED = (
            "every time constant from then on", course="buffer", has_time_constant=True),
     *_late("backlog", "s", 0.1, 0.5, "how late {} logged when a run begins, by what is worked off over a time constant",
            course="backlog", has_time_constant=True),
+    *_late("course", "s", 0.1, 0.5, "how late {} logged, by another share of it at each time since the run began",
+           course="drawn"),
     *_late("filter", "s", 0.05, 0.5, "time constant of the first-order filter behind which {} logged", Action.FILTER),
     DeclaredCorrection(
         "layer_radius", Parameter("layer_radius", "m", 0.06, -0.5, 0.5, doc="what the crane file's rope radius lacks"),

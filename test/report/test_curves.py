@@ -1,18 +1,22 @@
 """Friction curves as pages: the difference of two models and the shadow of one are what their labels say."""
 
+import json
 import re
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
+from winch_friction.cli.main import run
 from winch_friction.physics.channels import CM3_PER_REV
+from winch_friction.physics.friction.correction import Correction
 from winch_friction.physics.winch.model_curve import ModelCurve, model_curve
-from winch_friction.records.model_file import load_model
+from winch_friction.records.model_file import load_model, save_model
 from winch_friction.report import curves
 from winch_friction.report.curves import (
     SPEED,
     TORQUE,
+    course_plot,
     curve_plot,
     difference_plot,
     joint_std,
@@ -20,7 +24,7 @@ from winch_friction.report.curves import (
     parameter_html,
     parts_plot,
 )
-from winch_friction.report.tables import number
+from winch_friction.report.tables import correction_rows, number
 
 FIRST, SECOND = load_model("a6vm215_crane1"), load_model("a6vm215_crane2")
 
@@ -133,3 +137,57 @@ def test_a_parameters_deviation_is_its_own_and_none_where_the_model_knows_none()
     rpm = 30.0 / np.pi
     assert cell(known, "C4")[1:4] == [number(SECOND.values[k] * rpm), number(SECOND.std[k] * rpm), "rpm"]
     assert cell(unknown, "C4")[1:4] == [number(SECOND.values[k] * rpm), "–", "rpm"]
+
+
+# -- what a model says is wrong with logs and crane file
+HELD = (
+    (Correction("pressure_offset", 2.5e5, 1e4, groups=("active", "passive")),
+     (2.5, 0.1, "bar", "active, passive groups")),
+    (Correction("layer_radius", 0.03, layers=(2,)), (0.03, None, "m", "layer 2")),
+    (Correction("tare_load", 1500.0, 2000.0), (1.5, 2.0, "t", "always")),
+    (Correction("inertia", -7e-20, 0.5), (0.0, 0.5, "kg·m²", "always")),  # the rounding of a solver
+    (Correction("pressure_bend", 0.02, 0.001, beyond=2e7, groups=("main",)),
+     (0.02, 0.001, "–", "main group; beyond 200 bar")),
+    (Correction("accumulator_warmth", 0.02, 0.001, time_constant=45.0, during=((1.7e9, np.inf),)),
+     (0.02, 0.001, "–", "over 45 s; since 2023-11-14 22:13 UTC")),
+    (Correction("pressure_creep", 3e5, 1e4, during=((0.0, 60.0),)), (3.0, 0.1, "bar", "0 s to 60 s")),
+    (Correction("signal_course", 0.15, 0.01, course=((0.0, 0.5), (40.0, 1.0), (90.0, 0.0))),
+     (0.15, 0.01, "s", "by a course of 3 points over 90 s")),
+)  # fmt: skip
+
+
+@pytest.mark.parametrize(("correction", "said"), HELD)
+def test_a_correction_stands_with_what_it_is_restricted_to_in_the_units_that_people_read(correction, said):
+    ((name, value, std, *more, meaning),) = correction_rows([correction])
+    assert (name, meaning) == (correction.name, correction.declared.doc)
+    assert value == pytest.approx(said[0])
+    assert (std, tuple(more)) == (said[1] if said[1] is None else pytest.approx(said[1]), said[2:])
+
+
+def test_a_models_page_and_words_say_what_it_corrects_and_draw_a_delays_course(tmp_path, capsys):
+    """A repaired model that only corrects a log looked like the one that it was made from."""
+    model = replace(SECOND, corrections=tuple(each for each, _ in HELD))
+    path = str(save_model(model, tmp_path / "m.yaml"))
+    assert run(["show", path, "--out", str(tmp_path / "m.html")]) == 0
+    told, page = capsys.readouterr().out, (tmp_path / "m.html").read_text()
+    for each, (*_, where) in HELD:
+        assert each.name in told
+        assert where.split()[0] in told
+        assert each.name in page.replace("<wbr>", "")
+    assert page.count("How late the speed is logged.") == 1
+    assert "What logs or crane file have wrong" in page
+    assert run(["show", path, "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["corrections"].keys() == {each.name for each, _ in HELD}
+    assert run(["show", "a6vm215_crane2", "--out", str(tmp_path / "none.html")]) == 0
+    assert "corrections" not in capsys.readouterr().out
+    assert "have wrong" not in (tmp_path / "none.html").read_text()
+
+
+@pytest.mark.parametrize(
+    ("name", "said"), [("signal_course", "the speed is"), ("pressure_course", "the pressures are")]
+)
+def test_a_course_is_drawn_in_milliseconds_over_the_time_since_a_run_began(name, said):
+    plot = course_plot(Correction(name, 0.2, course=((0.0, 0.5), (40.0, 1.0), (90.0, 0.0))))
+    (columns,) = (each.columns for each in plot.frames)
+    assert [list(each) for each in columns.values()] == [[0.0, 40.0, 90.0], pytest.approx([100.0, 200.0, 0.0])]
+    assert said in plot.caption

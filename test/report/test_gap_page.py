@@ -9,6 +9,7 @@ import pytest
 
 from winch_friction.discrepancy.answer import Combination, Effect, ParameterEstimate
 from winch_friction.physics.channels import BAR, CM3_PER_REV, RPM
+from winch_friction.physics.friction.correction import Correction
 from winch_friction.report import gap as page
 from winch_friction.report.gap_plots import _heat, _measured, _with_breaks, heat_plot, run_plots, speed_plot
 from winch_friction.report.gap_words import facts, gap_torque, how_sure, left_of_heave, top_speed_change
@@ -145,6 +146,14 @@ def test_an_effects_evidence_is_its_own():
         ["T_c", "12", "0.5", "N·m"],
         ["w_c", "10", "1", "rpm"],
     ]
+
+
+@pytest.mark.parametrize(("name", "drawn"), [("signal_delay", 1), ("coulomb", 0)])
+def test_a_delays_course_is_drawn_beside_its_name(name, drawn):
+    course = Correction("signal_course", 0.15, 0.01, course=((0.0, 0.5), (40.0, 1.0)))
+    model = SimpleNamespace(terms=(), corrections=(course, Correction("signal_delay", 0.01)))
+    html = page._effect(effect(name=name), SimpleNamespace(model=model))
+    assert html.count("How late the speed is logged.") == drawn
 
 
 def test_a_combination_is_told_in_the_unit_that_stands_behind_it():

@@ -123,6 +123,7 @@ def say_beyond(option: str, loads: Sequence[float], crane: Any) -> None:
 def _model(name: str, crane: str, load: float | None, out: Path | None, as_json: bool) -> None:
     from winch_friction.physics.channels import RPM
     from winch_friction.physics.winch.model_curve import model_curve, usual_loads
+    from winch_friction.records.corrections import corrections_content
     from winch_friction.records.model_file import load_model
 
     model = load_model(name)
@@ -153,6 +154,7 @@ def _model(name: str, crane: str, load: float | None, out: Path | None, as_json:
                 "load_t": load,
                 "terms": model.term_names,
                 "parameters": parameters,
+                "corrections": corrections_content(model.corrections),
                 "curve": {"speed_rpm": rpm, "torque_Nm": curve.torque, "std_Nm": curve.std, "terms_Nm": curve.parts},
             }
         )
@@ -165,7 +167,7 @@ def _model(name: str, crane: str, load: float | None, out: Path | None, as_json:
 def _draw_model(model: Any, machine: Any, curve: Any, rpm: Any) -> None:
     from winch_friction.cli.chart import chart
     from winch_friction.physics.channels import beside
-    from winch_friction.report.tables import for_people, value_for_people
+    from winch_friction.report.tables import CORRECTIONS, correction_rows, for_people, value_for_people
 
     largest = sorted(curve.parts, key=lambda name: -float(abs(curve.parts[name]).max()))[:3]
     lines = {"total": curve.torque, **{name: curve.parts[name] for name in largest}}
@@ -182,6 +184,13 @@ def _draw_model(model: Any, machine: Any, curve: Any, rpm: Any) -> None:
         for p, v, s in zip(model.parameters, model.values, model.std.tolist(), strict=True)
     ]
     show_table(f"parameters of {', '.join(model.term_names)}", ("parameter", "value", "sigma", "unit", "meaning"), rows)
+    if model.corrections:
+        wrong = [
+            [correction, f"{value:.4g}", "-" if std is None else f"{std:.2g}", *more]
+            for correction, value, std, *more in correction_rows(model.corrections)
+        ]
+        head = ["sigma" if each == "σ" else each for each in CORRECTIONS]
+        show_table("corrections: what its logs or its crane file have wrong", head, wrong)
 
 
 def show_physics(name: str, out: Path | None, as_json: bool) -> None:

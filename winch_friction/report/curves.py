@@ -8,14 +8,23 @@ import numpy as np
 
 from winch_friction.physics.channels import CM3_PER_REV, RPM, beside
 from winch_friction.physics.friction import FrictionModel
+from winch_friction.physics.friction.correction import Correction
 from winch_friction.physics.winch.model_curve import ModelCurve
 from winch_friction.report.base import TextSection, write_report
 from winch_friction.report.decision import decision_html, provenance_html
 from winch_friction.report.equations import term_html
 from winch_friction.report.plots import Frame, Line, Plot, plot_html
-from winch_friction.report.tables import for_people, number, table_html, value_for_people
+from winch_friction.report.tables import (
+    CORRECTIONS,
+    correction_rows,
+    for_people,
+    number,
+    table_html,
+    value_for_people,
+)
 
 SPEED, TORQUE = "motor speed [rpm]", "friction torque [N·m]"
+SINCE, LATE = "time since the run began [s]", "delay [ms]"
 _ROLES = ("before", "after")
 
 
@@ -37,6 +46,7 @@ def write_model_page(path: Path, model: FrictionModel, curves: Sequence[ModelCur
         TextSection("Friction curve", decision_html(said, facts) + plot_html(curve_plot(curves))),
         TextSection("What each term gives", plot_html(parts_plot(middle))),
         TextSection("Parameters", parameter_html(model)),
+        *([TextSection("What logs or crane file have wrong", corrections_html(model))] if model.corrections else []),
         TextSection("Equations", equations),
         TextSection("Provenance", provenance_html(dict(model.provenance) or {"model": model.name})),
     ]
@@ -92,6 +102,20 @@ def parameter_html(model: FrictionModel) -> str:
         for p, value, std in zip(model.parameters, model.values, model.std.tolist(), strict=True)
     ]
     return table_html(("parameter", "value", "σ", "unit", "meaning"), rows, "Parameters")
+
+
+def corrections_html(model: FrictionModel) -> str:
+    """The corrections of a model, and a picture of each delay that takes a course."""
+    table = table_html(CORRECTIONS, correction_rows(model.corrections), "Corrections")
+    return table + "".join(plot_html(course_plot(each)) for each in model.corrections if each.course)
+
+
+def course_plot(correction: Correction) -> Plot:
+    """How late a signal is over the time since a run began, as data have drawn it."""
+    time, share = np.transpose(correction.course)
+    frame = Frame(correction.name, {SINCE: time, LATE: 1e3 * correction.value * share})
+    said = f"How late {'the speed is' if correction.name.startswith('signal') else 'the pressures are'} logged."
+    return Plot("Delay over the run", [frame], [Line("delay", SINCE, LATE)], SINCE, [LATE], said, height=230)
 
 
 def write_comparison_page(

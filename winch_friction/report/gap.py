@@ -9,12 +9,14 @@ from typing import Any
 import numpy as np
 
 from winch_friction.discrepancy.answer import Effect, GapResult, Side
+from winch_friction.discrepancy.candidates.lateness import DELAY
 from winch_friction.physics.channels import RPM, beside
 from winch_friction.physics.effects import effect_text
 from winch_friction.physics.errors import counted
 from winch_friction.physics.friction import FrictionModel, Scope, Term, registered_terms
 from winch_friction.physics.friction.table import FACTORS, at_knots, in_windows, tabulated
 from winch_friction.report.base import Section, TextSection, write_report
+from winch_friction.report.curves import course_plot
 from winch_friction.report.decision import decision_html, list_html, provenance_html
 from winch_friction.report.equations import latex_html, term_html
 from winch_friction.report.gap_plots import heat_plot, run_plots, speed_plot
@@ -110,6 +112,7 @@ def _effect(effect: Effect, result: GapResult) -> str:
         + (paragraph(f"Found as: {shape_in_words(effect.variant)}.") if effect.variant and not told else "")
         + (table_html(("parameter", "value", "σ", "unit"), rows, "What was found", 4) if rows else "")
         + curve
+        + "".join(plot_html(course_plot(c)) for c in (model.corrections if effect.name == DELAY else ()) if c.course)
         + paragraph(evidence)
         + size
         + combination

@@ -251,7 +251,7 @@ def test_levels_that_a_logged_signal_or_the_date_says_are_no_amounts_of_a_brake(
         of_layer = 4.0 * np.isin(LAYERS, (2.0, 4.0)) + noise  # on two layers that are no neighbours
         by_night = 3.0 * np.sin(2.0 * np.pi * np.array([each.start for each in runs]) / 86400.0) + noise
         assert all(follows_a_signal(runs, levels) for levels in (warm, of_layer, by_night)), seed
-    assert np.mean(seeming) < 0.15
+    assert np.mean(seeming) < 0.1
     few = [run(k, load) for k, load in enumerate((1e4, 5e4, 7e4, 9e4, 1.2e5))]
     assert follows_a_signal(few, np.array([1.0, 5.0, 2.0, 4.0, 3.0]))  # five runs never tell that it does not
 
@@ -442,6 +442,26 @@ def test_runs_whose_clocks_all_begin_anew_have_no_dates_and_so_no_states(monkeyp
     there = np.array([False, True, False, True])
     assert in_each_run(runs, np.arange(1.0, 5.0)) == []
     assert in_some_runs(a_slot("zero"), runs, 8.0 * there, there) == []
+
+
+@pytest.mark.parametrize(
+    ("runs", "there", "windows"),
+    [
+        # two records of one lift, of which one has a tail; and one within the other
+        (((0.0, 10.0), (100.0, 10.0), (105.0, 10.0), (200.0, 10.0)), (0, 1, 1, 0), ((99.0, 116.0),)),
+        (((0.0, 10.0), (100.0, 30.0), (105.0, 10.0), (200.0, 10.0)), (0, 1, 1, 0), ((99.0, 131.0),)),
+        (((0.0, 30.0), (5.0, 10.0), (30.5, 10.0), (200.0, 10.0)), (0, 0, 1, 1), ((30.25, np.inf),)),
+        (((0.0, 30.0), (5.0, 10.0), (29.0, 10.0), (200.0, 10.0)), (0, 0, 1, 1), None),  # the first went on
+        (((0.0, 10.0), (9.0, 10.0), (100.0, 10.0), (200.0, 10.0)), (1, 0, 1, 1), None),
+    ],
+)
+def test_records_of_one_lift_that_overlap_are_in_one_state(monkeypatch, runs, there, windows):
+    """An offset since a date got a second name where two of twelve runs went on at once, both of them before it."""
+    monkeypatch.setattr("winch_friction.discrepancy.run_states.told_by_a_signal", lambda *_: False)
+    own = np.array(there, bool)
+    found = in_some_runs(a_slot("zero"), dated(*runs), 8.0 * own, own)
+    assert len(found) == (windows is not None)
+    assert not found or _state(dated(*runs), 8.0 * own, own).windows == windows
 
 
 @pytest.mark.parametrize(

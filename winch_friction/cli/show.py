@@ -189,8 +189,8 @@ def _draw_model(model: Any, machine: Any, curve: Any, rpm: Any) -> None:
             [correction, f"{value:.4g}", "-" if std is None else f"{std:.2g}", *more]
             for correction, value, std, *more in correction_rows(model.corrections)
         ]
-        head = ["sigma" if each == "σ" else each for each in CORRECTIONS]
-        show_table("corrections: what its logs or its crane file have wrong", head, wrong)
+        titles = ["sigma" if title == "σ" else title for title in CORRECTIONS]
+        show_table("corrections: what its logs or its crane file have wrong", titles, wrong)
 
 
 def show_physics(name: str, out: Path | None, as_json: bool) -> None:

@@ -26,7 +26,7 @@ def follows_a_signal(runs: Sequence[PreparedRun], levels: FloatArray) -> bool:
     beside = np.array([[float(run.kind == kind) for kind in kinds] for run in runs])
     if len(runs) - len(kinds) - 2 < FEWEST_FREE:
         return True
-    most = LIMITS.told_by_signal * _left_by(beside, levels)
+    most = LIMITS.followed * _left_by(beside, levels)
     medians, starts = _medians(runs), np.array([run.start for run in runs])
     load = _spread(np.array([float(np.median(run.load)) for run in runs]))
     hour = 2.0 * np.pi * starts / DAY

@@ -60,8 +60,8 @@ class State:
 
 def in_some_runs(slot: Slot, runs: Sequence[PreparedRun], levels: FloatArray, there: np.ndarray) -> list[Candidate]:
     """Candidates for what is `there` in some runs, at these levels; none where a logged signal says as much, or the
-    runs' clocks tell no order."""
-    if told_by_a_signal(runs, there) or not _in_turn(runs):
+    runs' clocks tell no order of those that have it and those that have not."""
+    if told_by_a_signal(runs, there) or not _apart(runs, there):
         return []
     return _candidates(slot, _state(runs, levels, there))
 
@@ -135,14 +135,23 @@ def _state(runs: Sequence[PreparedRun], levels: FloatArray, there: np.ndarray) -
 
 
 def _by_date(runs: Sequence[PreparedRun]) -> tuple[list[int], list[float], list[float]]:
+    """The runs' order, when each begins and when it and all before have ended: two records of one lift may overlap."""
     order = sorted(range(len(runs)), key=lambda k: runs[k].start)
-    return order, [runs[k].start for k in order], [runs[k].start + float(runs[k].time[-1]) for k in order]
+    ends = itertools.accumulate((runs[k].start + float(runs[k].time[-1]) for k in order), max)
+    return order, [float(runs[k].start) for k in order], list(ends)
 
 
 def _in_turn(runs: Sequence[PreparedRun]) -> bool:
     """Whether each run begins after the one before has ended: the clocks of others begin anew with each."""
     _, begins, ends = _by_date(runs)
     return not overlaps(zip(begins, ends, strict=True))
+
+
+def _apart(runs: Sequence[PreparedRun], there: np.ndarray) -> bool:
+    """Whether none of the runs that have something begins while one goes on that has not, or the other way."""
+    order, begins, ends = _by_date(runs)
+    switches = [k for k, (a, b) in enumerate(itertools.pairwise(order), 1) if there[a] != there[b]]
+    return all(begins[k] > ends[k - 1] for k in switches)
 
 
 def _spells(inside: Sequence[bool]) -> list[tuple[bool, list[int]]]:

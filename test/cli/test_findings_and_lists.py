@@ -258,7 +258,7 @@ def test_a_model_is_shown_with_its_largest_terms_and_its_parameters_for_people(m
         SimpleNamespace(name=name, unit=unit, doc=f"of {name}") for name, unit in (("p", "Pa"), ("w", "rad/s"))
     ]
     model = SimpleNamespace(name="ours", parameters=parameter, values=(3e5, np.pi), std=np.array([2e4, np.pi / 10]),
-                            covariance=np.eye(2), term_names=("a", "b"))  # fmt: skip
+                            covariance=np.eye(2), term_names=("a", "b"), corrections=())  # fmt: skip
     parts = {
         "a": np.array([1.0, 2.0]),
         "b": np.array([-9.0, 1.0]),

@@ -167,7 +167,8 @@ def _model(name: str, crane: str, load: float | None, out: Path | None, as_json:
 def _draw_model(model: Any, machine: Any, curve: Any, rpm: Any) -> None:
     from winch_friction.cli.chart import chart
     from winch_friction.physics.channels import beside
-    from winch_friction.report.tables import CORRECTIONS, correction_rows, for_people, value_for_people
+    from winch_friction.report.corrections import CORRECTIONS, correction_rows
+    from winch_friction.report.tables import for_people, value_for_people
 
     largest = sorted(curve.parts, key=lambda name: -float(abs(curve.parts[name]).max()))[:3]
     lines = {"total": curve.torque, **{name: curve.parts[name] for name in largest}}

@@ -11,17 +11,11 @@ from winch_friction.physics.friction import FrictionModel
 from winch_friction.physics.friction.correction import Correction
 from winch_friction.physics.winch.model_curve import ModelCurve
 from winch_friction.report.base import TextSection, write_report
+from winch_friction.report.corrections import CORRECTIONS, correction_rows
 from winch_friction.report.decision import decision_html, provenance_html
 from winch_friction.report.equations import term_html
 from winch_friction.report.plots import Frame, Line, Plot, plot_html
-from winch_friction.report.tables import (
-    CORRECTIONS,
-    correction_rows,
-    for_people,
-    number,
-    table_html,
-    value_for_people,
-)
+from winch_friction.report.tables import for_people, number, table_html, value_for_people
 
 SPEED, TORQUE = "motor speed [rpm]", "friction torque [N·m]"
 SINCE, LATE = "time since the run began [s]", "delay [ms]"

@@ -8,7 +8,6 @@ from math import isfinite
 from typing import Any
 
 from winch_friction.physics.channels import BAR, CM3_PER_REV, RPM, beside
-from winch_friction.physics.friction.correction import Correction
 
 
 def table_html(columns: Sequence[str], rows: Iterable[Sequence[Any]], caption: str = "", digits: int = 4) -> str:
@@ -72,40 +71,13 @@ def estimate_for_people(value: float, std: float, unit: str) -> tuple[Any, float
     """Value, standard deviation and unit as people read them; an instant, s since 1970, as its date, uncertain by h;
     0 for a value that is nothing beside its deviation."""
     if unit == "s" and value > _A_DATE:
-        return _instant(value), std / 3600.0, "h"
+        return instant(value), std / 3600.0, "h"
     return value_for_people(beside(value, std), unit), value_for_people(std, unit), for_people(unit)
 
 
-def _instant(time: float) -> str:
+def instant(time: float) -> str:
     """An instant as its date; of a clock that began with its log the seconds."""
     return f"{datetime.fromtimestamp(time, UTC):%Y-%m-%d %H:%M} UTC" if time > _A_DATE else f"{time:.4g} s"
-
-
-CORRECTIONS = ("correction", "value", "σ", "unit", "where and when", "meaning")
-
-
-def correction_rows(corrections: Iterable[Correction]) -> list[tuple[Any, ...]]:
-    """What a model says is wrong with signals and crane file, under `CORRECTIONS`, as people read it."""
-    rows = []
-    for each in corrections:
-        unit, std = each.declared.parameter.unit, each.std
-        value = value_for_people(each.value if std is None else beside(each.value, std), unit)
-        known = None if std is None else value_for_people(std, unit)
-        rows.append((each.name, value, known, for_people(unit), "; ".join(_ties(each)) or "always", each.declared.doc))
-    return rows
-
-
-def _ties(c: Correction) -> list[str]:
-    """What a correction is restricted to, in words."""
-    said = [f"{', '.join(c.groups)} group{'s' if len(c.groups) > 1 else ''}"] if c.groups else []
-    said += [f"layer{'s' if len(c.layers) > 1 else ''} {', '.join(map(str, c.layers))}"] if c.layers else []
-    said += [f"over {c.time_constant:.4g} s"] if c.time_constant is not None else []
-    if c.beyond is not None:
-        unit = c.declared.bends_in
-        said.append(f"beyond {value_for_people(c.beyond, unit):.4g} {for_people(unit)}")
-    for begin, end in c.during:
-        said.append(f"since {_instant(begin)}" if end == float("inf") else f"{_instant(begin)} to {_instant(end)}")
-    return said + ([f"by a course of {len(c.course)} points over {c.course[-1][0]:.4g} s"] if c.course else [])
 
 
 def _cells(row: Sequence[Any], numeric: Sequence[bool], digits: int) -> str:

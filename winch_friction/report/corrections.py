@@ -1,0 +1,34 @@
+"""What a model says is wrong with its logs and its crane file, as people read it."""
+
+from collections.abc import Iterable
+from typing import Any
+
+from winch_friction.physics.channels import beside
+from winch_friction.physics.friction.correction import Correction
+from winch_friction.report.tables import for_people, instant, value_for_people
+
+CORRECTIONS = ("correction", "value", "σ", "unit", "where and when", "meaning")
+
+
+def correction_rows(corrections: Iterable[Correction]) -> list[tuple[Any, ...]]:
+    """What a model says is wrong with signals and crane file, under `CORRECTIONS`, as people read it."""
+    rows = []
+    for each in corrections:
+        unit, std = each.declared.parameter.unit, each.std
+        value = value_for_people(each.value if std is None else beside(each.value, std), unit)
+        known = None if std is None else value_for_people(std, unit)
+        rows.append((each.name, value, known, for_people(unit), "; ".join(_ties(each)) or "always", each.declared.doc))
+    return rows
+
+
+def _ties(c: Correction) -> list[str]:
+    """What a correction is restricted to, in words."""
+    said = [f"{', '.join(c.groups)} group{'s' if len(c.groups) > 1 else ''}"] if c.groups else []
+    said += [f"layer{'s' if len(c.layers) > 1 else ''} {', '.join(map(str, c.layers))}"] if c.layers else []
+    said += [f"over {c.time_constant:.4g} s"] if c.time_constant is not None else []
+    if c.beyond is not None:
+        unit = c.declared.bends_in
+        said.append(f"beyond {value_for_people(c.beyond, unit):.4g} {for_people(unit)}")
+    for begin, end in c.during:
+        said.append(f"since {instant(begin)}" if end == float("inf") else f"{instant(begin)} to {instant(end)}")
+    return said + ([f"by a course of {len(c.course)} points over {c.course[-1][0]:.4g} s"] if c.course else [])

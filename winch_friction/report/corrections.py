@@ -5,7 +5,7 @@ from typing import Any
 
 from winch_friction.physics.channels import beside
 from winch_friction.physics.friction.correction import Correction
-from winch_friction.report.tables import for_people, instant, value_for_people
+from winch_friction.report.tables import estimate_for_people, for_people, value_for_people
 
 CORRECTIONS = ("correction", "value", "σ", "unit", "where and when", "meaning")
 
@@ -30,5 +30,11 @@ def _ties(c: Correction) -> list[str]:
         unit = c.declared.bends_in
         said.append(f"beyond {value_for_people(c.beyond, unit):.4g} {for_people(unit)}")
     for begin, end in c.during:
-        said.append(f"since {instant(begin)}" if end == float("inf") else f"{instant(begin)} to {instant(end)}")
+        said.append(f"since {_instant(begin)}" if end == float("inf") else f"{_instant(begin)} to {_instant(end)}")
     return said + ([f"by a course of {len(c.course)} points over {c.course[-1][0]:.4g} s"] if c.course else [])
+
+
+def _instant(time: float) -> str:
+    """An instant as its date; of a clock that began with its log the seconds."""
+    shown, _, unit = estimate_for_people(time, 0.0, "s")
+    return shown if isinstance(shown, str) else f"{shown:.4g} {unit}"

@@ -71,13 +71,8 @@ def estimate_for_people(value: float, std: float, unit: str) -> tuple[Any, float
     """Value, standard deviation and unit as people read them; an instant, s since 1970, as its date, uncertain by h;
     0 for a value that is nothing beside its deviation."""
     if unit == "s" and value > _A_DATE:
-        return instant(value), std / 3600.0, "h"
+        return f"{datetime.fromtimestamp(value, UTC):%Y-%m-%d %H:%M} UTC", std / 3600.0, "h"
     return value_for_people(beside(value, std), unit), value_for_people(std, unit), for_people(unit)
-
-
-def instant(time: float) -> str:
-    """An instant as its date; of a clock that began with its log the seconds."""
-    return f"{datetime.fromtimestamp(time, UTC):%Y-%m-%d %H:%M} UTC" if time > _A_DATE else f"{time:.4g} s"
 
 
 def _cells(row: Sequence[Any], numeric: Sequence[bool], digits: int) -> str:

@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from winch_friction.cli import console
 from winch_friction.cli.main import run
 from winch_friction.physics.channels import CM3_PER_REV
 from winch_friction.physics.friction.correction import Correction
@@ -165,14 +166,17 @@ def test_a_correction_stands_with_what_it_is_restricted_to_in_the_units_that_peo
     assert (std, tuple(more)) == (said[1] if said[1] is None else pytest.approx(said[1]), said[2:])
 
 
-def test_a_models_page_and_words_say_what_it_corrects_and_draw_a_delays_course(tmp_path, capsys):
+def test_a_models_page_and_words_say_what_it_corrects_and_draw_a_delays_course(tmp_path, capsys, monkeypatch):
     """A repaired model that only corrects a log looked like the one that it was made from."""
     model = replace(SECOND, corrections=tuple(each for each, _ in HELD))
     path = str(save_model(model, tmp_path / "m.yaml"))
+    monkeypatch.setattr(console.stdout, "width", 200)  # else names are folded
     assert run(["show", path, "--out", str(tmp_path / "m.html")]) == 0
     told, page = capsys.readouterr().out, (tmp_path / "m.html").read_text()
     assert "corrections: what its logs or its crane file have wrong" in told
-    for each, _ in HELD:
+    for each, (*_, where) in HELD:
+        assert each.name in told
+        assert where.split()[0] in told
         assert each.name in page.replace("<wbr>", "")
     assert page.count("How late the speed is logged.") == 1
     assert "What logs or crane file have wrong" in page

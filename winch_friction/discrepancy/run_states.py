@@ -215,7 +215,7 @@ def two_levels(levels: FloatArray, deviations: FloatArray, loads: FloatArray | N
     usual = float(np.median(deviations[known]))
     if usual <= 0.0:  # of columns that rounding alone fits
         return None
-    weights = np.minimum(1.0, (usual / np.maximum(deviations, max(usual, 1e-300))) ** 2)
+    weights = (usual / np.maximum(deviations, usual)) ** 2
     parts = [(order[:k], order[k:]) for k in range(2, len(order) - 1)]
     parts = [each for each in parts if _well_known(levels, deviations, usual, each) >= FEWEST_OF_A_LEVEL]
     fits = [(_two_lines(levels, load, weights, low, high), low, high) for low, high in parts]

@@ -99,22 +99,25 @@ def _names(section: Section, key: str, kind: type) -> tuple[Any, ...]:
 
 def _windows(section: Section) -> tuple[tuple[float, float], ...]:
     """Windows of absolute time in s, `[[from, to], ...]`; the last may be open, `.inf`."""
-    if "during" not in section:
-        return ()
-    given, where = section.get("during"), f"{section.where}: during"
-    if not isinstance(given, list) or not given or not all(isinstance(w, list) and len(w) == 2 for w in given):
-        raise InputError(f"{where} must be a list of windows [from, to] in s, found {given!r}")
+    given, where = _pairs(section, "during", "windows [from, to] in s", 1), f"{section.where}: during"
     return tuple((finite(w[0], where), w[1] if w[1] == float("inf") else finite(w[1], where)) for w in given)
 
 
 def _course(section: Section) -> tuple[tuple[float, float], ...]:
     """Points of a delay's course, `[[s since the run began, share], ...]`."""
-    if "course" not in section:
-        return ()
-    given, where = section.get("course"), f"{section.where}: course"
-    if not isinstance(given, list) or len(given) < 2 or not all(isinstance(p, list) and len(p) == 2 for p in given):
-        raise InputError(f"{where} must be a list of points [s since the run began, share], found {given!r}")
+    given, where = _pairs(section, "course", "points [s since the run began, share]", 2), f"{section.where}: course"
     return tuple((finite(p[0], where), finite(p[1], where)) for p in given)
+
+
+def _pairs(section: Section, key: str, what: str, fewest: int) -> list[list[Any]]:
+    """A list of so many pairs or more; empty where the key is not there."""
+    if key not in section:
+        return []
+    given = section.get(key)
+    pairs = isinstance(given, list) and all(isinstance(each, list) and len(each) == 2 for each in given)
+    if not pairs or len(given) < fewest:
+        raise InputError(f"{section.where}: {key} must be a list of {what}, found {given!r}")
+    return list(given)
 
 
 def _entry(c: Correction) -> dict[str, Any]:

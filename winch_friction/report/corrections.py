@@ -3,7 +3,6 @@
 from collections.abc import Iterable
 from typing import Any
 
-from winch_friction.physics.channels import beside
 from winch_friction.physics.friction.correction import Correction
 from winch_friction.report.tables import estimate_for_people, for_people, value_for_people
 
@@ -14,10 +13,9 @@ def correction_rows(corrections: Iterable[Correction]) -> list[tuple[Any, ...]]:
     """What a model says is wrong with signals and crane file, under `CORRECTIONS`, as people read it."""
     rows = []
     for each in corrections:
-        unit, std = each.declared.parameter.unit, each.std
-        value = value_for_people(each.value if std is None else beside(each.value, std), unit)
-        known = None if std is None else value_for_people(std, unit)
-        rows.append((each.name, value, known, for_people(unit), "; ".join(_ties(each)) or "always", each.declared.doc))
+        value, std, unit = estimate_for_people(each.value, each.std or 0.0, each.declared.parameter.unit)
+        known = None if each.std is None else std
+        rows.append((each.name, value, known, unit, "; ".join(_ties(each)) or "always", each.declared.doc))
     return rows
 
 

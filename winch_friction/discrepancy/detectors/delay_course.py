@@ -53,6 +53,9 @@ class Course(NamedTuple):
     shares: tuple[float, ...] = ()
 
 
+NO_COURSE = Course(0.0, "", 0.0, 0.0)
+
+
 def passing_delay(given: Given, train: tuple[str, ...], cross: CrossFit, selection: Selection) -> Slot | None:
     """A delay of about a tenth of a second that is gone, or not yet there, for most of each run, where that tells a
     good part of what the base leaves and one that stays tells little. None where nothing is missing."""
@@ -91,11 +94,12 @@ def course_of(runs: Sequence[PreparedRun], size: float) -> Course:
     near = 1.0 / period + step * np.linspace(-1.0, 1.0, FINER) if period > 0.0 else np.empty(0)
     decays = slowest * APART ** np.arange(max(np.log(1.0 / SOONEST / slowest) / np.log(APART), 0.0))
     most, over, how = max(best(near, FILLS_IN), best(decays, DRAINS_IN), best(decays, SETTLES_IN))
+    steady = max(told(np.ones_like(time)), told(time))
     drawn = _drawn(runs, behind, float(np.sign(size)))
-    if max(most, told(np.ones_like(time)), told(time)) < AS_MUCH * drawn.told:
+    if max(most, steady) < AS_MUCH * drawn.told:
         return drawn
-    if most <= max(told(np.ones_like(time)), told(time)):
-        return Course(0.0, "", 0.0, 0.0)
+    if most <= steady:
+        return NO_COURSE
     share = _share(how, time, over)
     return Course(most, how, float(over), float(share @ along) / float(share**2 @ square))
 
@@ -104,7 +108,7 @@ def _drawn(runs: Sequence[PreparedRun], behind: Values, sign: float) -> Course:
     """A course through points that are as far apart as tells most of runs from which it was not drawn: of every second
     run by the others, and the other way. It is straight between them, and makes nothing early."""
     halves = [_binned(half, behind) for half in (runs[::2], runs[1::2]) if half]
-    best = Course(0.0, "", 0.0, 0.0)
+    best = NO_COURSE
     if len(halves) < 2:
         return best
     size = max(len(time) for time, _, _ in halves)
@@ -114,12 +118,11 @@ def _drawn(runs: Sequence[PreparedRun], behind: Values, sign: float) -> Course:
         hats = np.maximum(1.0 - np.abs(time[:, None] / apart - np.arange(np.ceil(lasts / apart) + 1.0)), 0.0)
         fits = [(hats.T @ (square[:, None] * hats), sign * (hats.T @ along)) for along, square in sums]
         told = sum(_gain(_heights(*own), *other) for own, other in (fits, fits[::-1]))
-        if told > best.told:
-            heights = _heights(fits[0][0] + fits[1][0], fits[0][1] + fits[1][1])
-            most = float(heights.max(initial=0.0))
-            shares = tuple(float(f"{each / most:.3g}") for each in heights) if most > 0.0 else ()
+        heights = _heights(fits[0][0] + fits[1][0], fits[0][1] + fits[1][1])
+        if told > best.told and (most := float(heights.max())) > 0.0:
+            shares = tuple(float(f"{each / most:.3g}") for each in heights)
             best = Course(float(told), DRAWN_IN, apart, sign * most, shares)
-    return best if best.shares else Course(0.0, "", 0.0, 0.0)
+    return best
 
 
 def _heights(gram: FloatArray, along: FloatArray) -> FloatArray:

@@ -72,6 +72,7 @@ class DeclaredCorrection:
 
 
 LATE = (Action.DELAY, Action.FILTER)
+ONLY_LATE = ("buffer", "drawn")  # courses of a delay that make nothing early, as no filter does
 _PRESSURES = ("pressure_a", "pressure_b")
 _SPEED = ("motor_speed", "drum_speed", "shaft_angle")
 _DRIVE = (*_PRESSURES, "motor_torque")
@@ -81,9 +82,7 @@ _OIL = ("oil_temperature",)
 def _signal(
     name: str, action: Action, unit: str, typical: float, reach: float, doc: str, *channels: str, **more: Any
 ) -> DeclaredCorrection:
-    lower = (
-        0.0 if action is Action.FILTER or name.endswith(("_buffer", "_course")) else -reach
-    )  # neither makes anything early
+    lower = 0.0 if action is Action.FILTER or more.get("course") in ONLY_LATE else -reach
     parameter = Parameter(name, unit, typical, lower=lower, upper=reach, doc=doc)
     by_group = any(channel in (*_PRESSURES, "displacement") for channel in channels) and action not in LATE
     return DeclaredCorrection(name, parameter, "signal", action, channels, by_group=by_group, **more)

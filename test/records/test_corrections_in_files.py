@@ -13,6 +13,8 @@ from winch_friction.physics.friction.table import tabulated
 from winch_friction.physics.friction.term import Scope
 from winch_friction.records.corrections import corrections_content, read_tables, tables_content
 from winch_friction.records.model_file import load_model, model_from_text, model_to_text, save_model
+from winch_friction.records.schemas import DECLARED as SCHEMAS
+from winch_friction.records.schemas import problems
 from winch_friction.records.strict_yaml import Section, config_directory
 
 
@@ -39,6 +41,13 @@ def test_every_correction_survives_the_file(crane2_model, tmp_path):
     assert again.corrections == model.corrections
     assert again.crane == "crane_150t"
     assert model_to_text(again) == model_to_text(model)
+
+
+def test_a_file_with_every_correction_is_one_by_the_schema(crane2_model):
+    """An editor, and the list of problems of a file that is refused for another reason, called `course` unknown."""
+    text = model_to_text(replace(crane2_model, corrections=every_correction(), crane="crane_150t"))
+    assert problems(yaml.safe_load(text), SCHEMAS["model"]) == []
+    assert problems(yaml.safe_load(text.replace("[30.0, 1.0]", "[30.0]", 1)), SCHEMAS["model"]) != []
 
 
 def with_section(section):

@@ -114,9 +114,10 @@ def _pairs(section: Section, key: str, what: str, fewest: int) -> list[list[Any]
     if key not in section:
         return []
     given = section.get(key)
-    pairs = isinstance(given, list) and all(isinstance(each, list) and len(each) == 2 for each in given)
-    if not pairs or len(given) < fewest:
-        raise InputError(f"{section.where}: {key} must be a list of {what}, found {given!r}")
+    whole = isinstance(given, list) and len(given) >= fewest
+    wrong = [each for each in given if not (isinstance(each, list) and len(each) == 2)] if whole else [given]
+    if wrong:
+        raise InputError(f"{section.where}: {key} must be a list of {what}, found {wrong[0]!r}")
     return list(given)
 
 

@@ -55,6 +55,7 @@ _DRIVE = _object(
     {"kind": {"enum": _DRIVES}}, {"torque_constant": quantity("N*m/A"), "slowest_speed": quantity("rad/s")}
 )
 _VALUE = _object({"value": NUMBER, "unit": TEXT}, {"std": NUMBER, "lower": NUMBER, "upper": NUMBER})
+_PAIR: Schema = {"type": "array", "items": NUMBER, "minItems": 2, "maxItems": 2}
 _CORRECTION = _object(
     {"value": NUMBER, "unit": TEXT},
     {
@@ -66,7 +67,8 @@ _CORRECTION = _object(
         "layers": {"type": "array", "items": {"type": "integer", "minimum": 1}},
         "time_constant": quantity("s"),
         "beyond": quantity("Pa or m^3/rad"),
-        "during": {"type": "array", "items": {"type": "array", "items": NUMBER, "minItems": 2, "maxItems": 2}},
+        "during": {"type": "array", "items": _PAIR},
+        "course": {"type": "array", "items": _PAIR, "minItems": 2},
     },
 )
 _GROUP: Schema = {

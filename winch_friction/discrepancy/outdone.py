@@ -1,7 +1,7 @@
 """Names that do not stand however well they fit: beside one law of the grammar that does by itself what they do, and
 where their own law in the file has become another cause's."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from functools import partial
 
 import numpy as np
@@ -62,14 +62,17 @@ def no_port(parameters: Mapping[str, Estimates]) -> str:
     return f"{PORT}: a loss with speed^{n:.3g} and displacement^{m:.3g} is no port's, but of one group's flow"
 
 
-def surely_some(amounts: Estimates, file: FrictionModel) -> float:
-    """Standard deviations by which the amounts of a cause are some together: of two that a file ties each may be none,
-    and yet not both. 0 where the file does not know how they are tied, as it does not of corrections."""
+def surely_some(amounts: Estimates, file: FrictionModel, shapes: Collection[str] = ()) -> float:
+    """Standard deviations by which the amounts of a cause are some together, its `shapes` as they were found: of two
+    that a file ties each may be none, and yet not both, and of a steeper law a smaller amount is as much, but none of
+    it nothing. 0 where the file does not know how they are tied, as it does not of corrections."""
     names, covariance = file.parameter_names, file.covariance
-    if covariance is None or not {*amounts} <= {*names}:
+    if covariance is None or not {*amounts, *shapes} <= {*names}:
         return 0.0
-    at, value = [names.index(name) for name in amounts], np.array([a.value for a in amounts.values()])
-    return float(np.sqrt(chdtri(1, chdtrc(len(at), value @ np.linalg.solve(covariance[np.ix_(at, at)], value)))))
+    at, given = ([names.index(name) for name in own] for own in (amounts, shapes))
+    value, across = np.array([a.value for a in amounts.values()]), covariance[np.ix_(at, given)]
+    own = covariance[np.ix_(at, at)] - across @ np.linalg.pinv(covariance[np.ix_(given, given)]) @ across.T
+    return float(np.sqrt(chdtri(1, chdtrc(len(at), value @ np.linalg.solve(own, value)))))
 
 
 def told_by_chance(trial: Trial) -> str:

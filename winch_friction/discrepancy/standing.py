@@ -165,10 +165,10 @@ def _may_be_none(slots: Sequence[Slot], full: Trial, refit: Trial) -> str:
     if not at_the_floor(refit.holdout):
         return ""
     for slot in on_their_own(slots):
-        found = full.repaired.parameters.get(slot.name, {})
-        amounts = {p.name: found[p.name] for p in slot.origin[0].linear if p.name in found}
+        found, (candidate, shape) = full.repaired.parameters.get(slot.name, {}), slot.origin
+        amounts = {p.name: found[p.name] for p in candidate.linear if p.name in found}
         unsure = all(abs(each.value) < SURE * each.std for each in amounts.values())
-        if amounts and unsure and surely_some(amounts, full.repaired.model) < SURE:
+        if amounts and unsure and surely_some(amounts, full.repaired.model, {*shape.values} & {*found}) < SURE:
             return f"{slot.name}: a refit without it leaves no more than noise, and its size may be none"
     return ""
 

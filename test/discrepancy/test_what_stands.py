@@ -108,7 +108,8 @@ def test_of_two_amounts_that_are_tied_in_the_file_each_may_be_none_but_not_both(
 def test_an_amount_is_asked_with_its_shape_as_it_was_found(tied, refused):
     """A smaller amount of a steeper law is as much: an oil that thins, 3e-12 by the jackknife, was refused for an
     amount 2.5 deviations from none, of which nearly all was its law's steepness."""
-    slot = Slot("one", "", (0,), origin=(SimpleNamespace(linear=(Parameter("a", "1", 1.0),)), Shape("", {"steepness": 1.0})))
+    candidate, shape = SimpleNamespace(linear=(Parameter("a", "1", 1.0),)), Shape("", {"steepness": 1.0})
+    slot = Slot("one", "", (0,), origin=(candidate, shape))
     found = {"one": {"a": ParameterEstimate(2.2, 1.0, "1"), "steepness": ParameterEstimate(1.0, 1.0, "1")}}
     file = SimpleNamespace(parameter_names=("K1", "steepness", "a"), covariance=np.eye(3))
     file.covariance[1, 2] = file.covariance[2, 1] = tied

@@ -269,12 +269,12 @@ def test_plateaus_speak_for_a_leak_and_only_where_they_are_few_whatever_follows_
     """Twenty stretches of three runs are enough."""
     counts = {1.0: steady, 30.0: slow}
     rows = lambda runs, prepared, change: np.arange(counts[change])[:, None] % 3
-    monkeypatch.setattr(flow_balance, "_tables", rows)
+    monkeypatch.setattr(flow_balance, "stretches", rows)
     monkeypatch.setattr(flow_balance, "_full_displacement", lambda _: 3e-5)
     monkeypatch.setattr(flow_balance, "leakage_of", lambda table, change, full: (len(table), change, full))
     found = flow_balance.lost_speed([], [])
     assert found == (None if change is None else (counts[change], change, 3e-5))
-    monkeypatch.setattr(flow_balance, "_tables", lambda *_: np.arange(40)[:, None] % 2)
+    monkeypatch.setattr(flow_balance, "stretches", lambda *_: np.arange(40)[:, None] % 2)
     assert flow_balance.lost_speed([], []) is None
 
 
@@ -411,7 +411,7 @@ def test_lost_speed_is_of_the_displacement_that_motors_have_at_most_in_any_run(m
         group = SimpleNamespace(balances=True, displacement=np.array([1e-5, displacement]))
         return SimpleNamespace(constants=(("max_displacement", stated),), groups=[group])
 
-    monkeypatch.setattr(flow_balance, "_tables", lambda *_: "table")
+    monkeypatch.setattr(flow_balance, "stretches", lambda *_: "table")
     monkeypatch.setattr(flow_balance, "_enough", lambda table: True)
     monkeypatch.setattr(flow_balance, "leakage_of", lambda table, change, full: (table, change, full))
     assert flow_balance.lost_speed([], [own(2e-5), own(3e-5)]) == ("table", lost_flow.STEADY_COMMAND, full)

@@ -80,7 +80,7 @@ def test_a_second_law_of_leakage_counts_where_other_runs_need_it_and_it_leaks_ou
     rates = [leakage_per_coefficient(law, drop, thin) / 3e-5 for law in LEAKAGE_LAWS]
     lost = 1e-11 * rates[0] + second * rates[1] + 0.02 * rng.standard_normal(120)
     table = np.column_stack([run, lost, rng.uniform(-80.0, 80.0, 120), np.zeros(120), *rates])
-    monkeypatch.setattr(flow_balance, "_tables", lambda *_: table)
+    monkeypatch.setattr(flow_balance, "stretches", lambda *_: table)
     found = lost_speed([], [SimpleNamespace(constants=(("max_displacement", 3e-5),))])
     assert sorted(found.leakage) == laws
 
@@ -221,13 +221,13 @@ def test_on_few_locked_stretches_a_leak_makes_each_plainly_better(leak, holds, m
     """Five signs that agree are one chance in 32: no significance, but a lost speed of 5 rad/s needs none."""
     runs, prepared, *_ = _prepared("slow_log", ("slip_leakage", 1.0))
     found = lost_speed(runs, prepared)
-    tables = flow_balance._tables
+    tables = flow_balance.stretches
     some = tables(runs, prepared, found.change)[:4]
     some[:, 1] *= leak / np.abs(some[:, 1]).max()
     assert len(some) < FEWEST_TO_FLIP
-    monkeypatch.setattr(flow_balance, "_tables", lambda *_: some)
+    monkeypatch.setattr(flow_balance, "stretches", lambda *_: some)
     assert holds_on(found, runs, prepared) is holds
-    monkeypatch.setattr(flow_balance, "_tables", lambda *_: some[:1])
+    monkeypatch.setattr(flow_balance, "stretches", lambda *_: some[:1])
     assert not holds_on(found, runs, prepared)  # one stretch is nothing
 
 

@@ -210,6 +210,8 @@ def test_what_does_not_stand_in_the_end_is_said():
     assert one.startswith("leak: the training runs show it (there), but")
     assert other.startswith("r: ")
     assert module.not_borne_out(searched(ripple=None, flow=()), search) == []
+    again = SimpleNamespace(effect=SimpleNamespace(name="leak", where="in other runs"))  # by another amount
+    assert module.not_borne_out(search, replace(search, flow=(again, air))) == []
 
 
 def tried_with(monkeypatch, search, left_of, worse_of=lambda _: (), sets=()):

@@ -13,6 +13,8 @@ from scipy.special import fdtrc
 from winch_friction.discrepancy.answer import AMBIGUOUS, MISSING, UNEXPLAINED
 from winch_friction.discrepancy.candidates.families import SURFACES, free_members
 from winch_friction.discrepancy.catalogue import another_in_each_run, of_one_group
+from winch_friction.discrepancy.detectors.flow_balance import stretches
+from winch_friction.discrepancy.detectors.lost_flow import PLAINLY, Leakage
 from winch_friction.discrepancy.engine import FloatArray
 from winch_friction.discrepancy.engine.chance import chance_of_order, chance_of_zero_mean, levels_of_runs, rms
 from winch_friction.discrepancy.expansion import Given, Split, as_rigid, loads_by_balance, meet, swings
@@ -120,6 +122,30 @@ def by_other_runs(study: Study, trial: Trial, showing: Sequence[str]) -> tuple[S
     proven = _closing(other, search_runs(other, trial.search.given), trial)
     named, before = (set(each.search.explanation.names) for each in (proven, trial))
     return (other, proven) if proven is not trial and before < named else (study, trial)
+
+
+def by_lost_speed(study: Study, trial: Trial, search: Search) -> tuple[Study, Trial]:
+    """A leak that the training runs show and locked ones that hardly lose any speed do not bear out, once more with
+    some of those that lose most locked: a gap that opens with pressure loses nothing below. Study and trial as they are
+    unless it holds in these, and all names stand that stood before.
+
+    `search`: what the training runs gave.
+    """
+    leaks = [each for each in search.flow if isinstance(each, Leakage) and each not in trial.search.flow]
+    if not leaks or study.options.candidates:
+        return study, trial
+    pairs = zip(study.split.runs, search.given.prepared, strict=True)
+    tables = {run.name: stretches([run], [own], leaks[0].change) for run, own in pairs}
+    lost = {name: rms(leaks[0].lost(table)) for name, table in tables.items() if len(table)}
+    locked, showing = ([lost[name] for name in lost if (name in study.split.holdout) is own] for own in (True, False))
+    if not locked or rms(np.array(locked)) > PLAINLY * rms(np.array(showing)):
+        return study, trial
+    most_first = sorted(lost, key=lambda name: -lost[name])
+    other = replace(study, split=_locking(study.split, most_first, study.split.holdout))
+    proven = standing(other, search_runs(other, trial.search.given))
+    leaks_still = any(isinstance(each, Leakage) for each in proven.search.flow)
+    as_many = {*trial.search.explanation.names} <= {*proven.search.explanation.names}
+    return (other, proven) if leaks_still and as_many and not far_off(proven.train) else (study, trial)
 
 
 def by_beyond(study: Study, trial: Trial, search: Search) -> tuple[Study, Trial]:

@@ -216,10 +216,10 @@ def _replicated(search: Search, split: Split, rng: np.random.Generator) -> Searc
 
 def not_borne_out(search: Search, stands: Search) -> list[str]:
     """What the training runs show beside the moving samples and does not stand in the end, a sentence each."""
-    shown, kept = ((*each.flow, *([each.ripple] if each.ripple else [])) for each in (search, stands))
+    shown = {each.effect.name: each.effect for each in (*search.flow, search.ripple) if each}
+    kept = {each.effect.name for each in (*stands.flow, stands.ripple) if each}
     but = "but by none of its laws does it hold in the locked runs, so it is not named"
-    gone = (each.effect for each in shown if each not in kept)
-    return [f"{each.name}: the training runs show it ({each.where}), {but}" for each in gone]
+    return [f"{n}: the training runs show it ({each.where}), {but}" for n, each in shown.items() if n not in kept]
 
 
 def _judged(trial: Trial, why: str, rng: np.random.Generator) -> Search:

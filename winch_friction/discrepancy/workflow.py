@@ -123,6 +123,7 @@ def find_gap(runs: Sequence[Run], crane: Crane, model: FrictionModel, options: G
 
 def _once_more(study: Study, given: Given, trial: Trial, search: Search) -> tuple[Study, Trial]:
     """What is open, asked again by every way that may say more than what stands."""
+    study, trial = again.by_lost_speed(study, trial, search)
     if trial.search.verdict.kind != NOTHING and not study.options.candidates:
         study, trial = _with_other_runs(study, trial)
         if trial.search.verdict.kind == UNEXPLAINED and search.verdict.kind in (MISSING, AMBIGUOUS):
@@ -140,8 +141,7 @@ def _once_more(study: Study, given: Given, trial: Trial, search: Search) -> tupl
 
 
 def _with_other_runs(study: Study, trial: Trial) -> tuple[Study, Trial]:
-    """With others locked, where two training runs or more show what none of the locked ones shows: one alone cannot be
-    learned from and proven on."""
+    """With others locked, where two training runs or more show what no locked one does: one alone proves nothing."""
     if not at_the_floor(trial.holdout):
         return study, trial
     showing = [name for name, left in trial.train.most_left_first.items() if left > LIMITS.far_off_the_floor]
@@ -262,7 +262,7 @@ def _concluded(model: FrictionModel, given: FrictionModel, verdict: str) -> Fric
 
 
 def _notes(runs: Sequence[Run], loads: Mapping[str, float]) -> tuple[str, ...]:
-    notes = [f"{name}: no hook_load; {load / 1e3:.1f} t estimated from the balance" for name, load in loads.items()]
+    notes = (f"{name}: no hook_load; {load / 1e3:.1f} t estimated from the balance" for name, load in loads.items())
     bare = {reduce(str.removesuffix, adequacy.PARTS, r.name) for r in runs if "wire_layer" not in r and r.groups}
     said = f"no wire_layer in {len(bare)} run{'s' * (len(bare) > 1)}: the outer layer is assumed"
     return (*notes, *([said] if bare else []))

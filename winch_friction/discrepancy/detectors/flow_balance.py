@@ -59,7 +59,7 @@ def shown_by(
 def holds_on(found: Leakage | FreeAir, runs: Sequence[Run], prepared: Sequence[PreparedRun]) -> bool:
     """Whether what was found also explains the speed that other runs lose."""
     if isinstance(found, Leakage):
-        return found.explains(_tables(runs, prepared, found.change))
+        return found.explains(stretches(runs, prepared, found.change))
     sums = _all_sums(runs, prepared)
     if not len(sums):
         return False
@@ -72,14 +72,14 @@ def lost_speed(runs: Sequence[Run], prepared: Sequence[PreparedRun]) -> Leakage 
     """Speed lost in proportion to pressure over viscosity, or by another law; None where no command is logged, or too
     few stretches follow it."""
     for change in (STEADY_COMMAND, SLOW_COMMAND):
-        if _enough(table := _tables(runs, prepared, change)):
+        if _enough(table := stretches(runs, prepared, change)):
             return leakage_of(table, change, _full_displacement(prepared))
     return None
 
 
 def leak_untestable(runs: Sequence[Run], prepared: Sequence[PreparedRun]) -> list[Untestable]:
     """Why runs whose command is logged could not show what leaks, if they could not."""
-    table = _tables(runs, prepared, SLOW_COMMAND)
+    table = stretches(runs, prepared, SLOW_COMMAND)
     if _enough(table) or not any(REFERENCE in run and own.groups for run, own in zip(runs, prepared, strict=True)):
         return []
     need = f"{FEWEST_SEGMENTS} stretches of {SEGMENT:g} s in {FEWEST_RUNS} runs in which the speed follows its command"
@@ -97,7 +97,8 @@ def _full_displacement(prepared: Sequence[PreparedRun]) -> float:
     return stated or max(float(np.max(_driving(p).displacement)) for p in prepared if p.groups)
 
 
-def _tables(runs: Sequence[Run], prepared: Sequence[PreparedRun], change: float) -> FloatArray:
+def stretches(runs: Sequence[Run], prepared: Sequence[PreparedRun], change: float) -> FloatArray:
+    """Rows of what runs lose, as `Leakage` reads them, where the command changes by less than `change`, rad/s^2."""
     pairs = [(run, p) for run, p in zip(runs, prepared, strict=True) if REFERENCE in run and p.groups]
     none = np.empty((0, 4 + len(LEAKAGE_LAWS)))
     return np.concatenate([none, *(_segments(run, p, k, change) for k, (run, p) in enumerate(pairs))])

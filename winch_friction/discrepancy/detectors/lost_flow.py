@@ -90,12 +90,17 @@ class Leakage:
         """The leakage as entries of the model."""
         return tuple(Correction(law, *value, source=SOURCE) for law, value in self.leakage.items())
 
+    def lost(self, table: FloatArray) -> FloatArray:
+        """Speed that is lost in these rows beside what goes with the motion, rad/s."""
+        lost, motion, *_ = _parts(table, self.change)
+        return np.asarray(lost - motion @ self.alone)
+
     def explains(self, table: FloatArray) -> bool:
         """Whether the leakage also explains the speed that is lost in these rows, of runs that it was not fitted to."""
         if not len(table):
             return False
         lost, motion, _, rates = _parts(table, self.change)
-        before = lost - motion @ self.alone
+        before = self.lost(table)
         after = lost - motion @ self.beside
         for law, (value, _) in self.leakage.items():
             after = after - value * rates[law]

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.stats import linregress
 
-from winch_friction.discrepancy.proof import drift_note
+from winch_friction.discrepancy.drift import drift_note
 
 DRIVE = 100.0
 

@@ -356,7 +356,7 @@ def test_what_is_open_or_acts_one_way_is_held_against_levels(monkeypatch, kind, 
     monkeypatch.setattr(workflow.again, "by_levels", lambda study, trial: calls.append(trial) or (study, trial))
     monkeypatch.setattr(workflow, "swings", lambda given: False)
     slots = [SimpleNamespace(origin=(SimpleNamespace(opposing=each), None)) for each in opposing]
-    search = SimpleNamespace(verdict=SimpleNamespace(kind=kind), explanation=SimpleNamespace(slots=slots))
+    search = SimpleNamespace(verdict=SimpleNamespace(kind=kind), explanation=SimpleNamespace(slots=slots), flow=())
     study = SimpleNamespace(options=GapOptions(candidates=("own",)))
     workflow._once_more(study, None, SimpleNamespace(search=search), search)
     assert len(calls) == asked

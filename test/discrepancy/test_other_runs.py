@@ -162,7 +162,7 @@ def test_only_names_that_fell_are_asked_beyond(monkeypatch, kind, searched, aske
     monkeypatch.setattr(workflow.again, "by_levels", lambda study, own: (study, own))
     monkeypatch.setattr(workflow, "swings", lambda _: False)
     monkeypatch.setattr(workflow, "_surfaces_may_say_more", lambda _: False)
-    search = SimpleNamespace(verdict=SimpleNamespace(kind=searched))
+    search = SimpleNamespace(verdict=SimpleNamespace(kind=searched), flow=("a leak",))
     workflow._once_more(Study(SPLIT, None, GapOptions(), np.random.default_rng(0)), None, before, search)
     assert (bool(calls), leaks) == (asked, [before])  # of a leak always, for it leaves the balance closed
 

@@ -6,11 +6,13 @@ import numpy as np
 import pytest
 from scipy.stats import linregress
 
+from winch_friction.discrepancy import drift
 from winch_friction.discrepancy import proof as module
+from winch_friction.discrepancy.drift import drift_note
 from winch_friction.discrepancy.engine.chance import Size
 from winch_friction.discrepancy.engine.noise import Made
 from winch_friction.discrepancy.preparation.prepare import PreparedRun
-from winch_friction.discrepancy.proof import adds, drift_note, drive_of, leaves_too_much, worse_runs
+from winch_friction.discrepancy.proof import adds, drive_of, leaves_too_much, worse_runs
 from winch_friction.discrepancy.thresholds import LIMITS
 
 RUNS, BLOCKS = 8, 100
@@ -295,7 +297,7 @@ def test_names_are_proven_by_the_noise_and_the_balance_that_they_leave(monkeypat
 def test_names_are_refused_where_a_locked_run_grows_or_none_has_a_block(monkeypatch):
     fitted, named = side(1.0, before=3.0), side(0.5, before=3.0)
     for each in (fitted, named):
-        each.size_before, each.excused = Size(3.0, (2.9, 3.1)), each.floor
+        each.size_before, each.excused, each.slowest = Size(3.0, (2.9, 3.1)), each.floor, 0.0
     monkeypatch.setattr(module, "worse_runs", lambda own, _: ("run 1", "run 4") if own is named else ("none",))
     assert module.unproven("wave", fitted, named, np.random.default_rng(0)) == "wave: the gap of run 1, run 4 grows"
     monkeypatch.setattr(module, "worse_runs", lambda *_: ())
@@ -316,8 +318,8 @@ def test_two_models_are_compared_over_the_runs_that_were_asked(monkeypatch):
     blocks = SimpleNamespace(
         run=np.array([0, 0, 0, 1]),
         y=np.array([3.0, 0.0, 0.0, 4.0]),
-        x=np.array([[1.0, 9.0], [0, 9], [0, 9], [2.0, 9.0]]),
-    )
+        x=np.array([[1.0, 9.0], [0, 9], [0, 9], [2.0, 9.0]]), features={},
+    )  # fmt: skip
     tables, asked = [], []
 
     def noise_of(values, skew, _, k, least, made):
@@ -351,6 +353,24 @@ def test_two_models_are_compared_over_the_runs_that_were_asked(monkeypatch):
     drive = np.sqrt(3 * 100.0 + 400.0)
     assert found.relative == (pytest.approx(5.0 / drive), pytest.approx(np.sqrt(5.0) / drive))
     assert np.isnan(found.size_before.value)
+    assert found.slowest == 0.0
+    blocks.features = {"motor_speed": np.array([30.0, 20.0, 10.0, 40.0])}
+    monkeypatch.setattr(module, "_of_slowest", lambda values, own: (values.tolist(), own))
+    assert module.beside(before, after, ("c", "a")).slowest == ([1.0, 0.0, 0.0, 2.0], blocks)
+
+
+def test_the_slowest_blocks_are_a_tenth_and_enough_to_tell():
+    """Whichever way they move."""
+    speed = np.r_[np.linspace(50.0, 60.0, 1800), np.linspace(-2.0, -1.0, 100), np.linspace(1.0, 2.0, 100)]
+    left = np.where(np.abs(speed) < 3.0, 3.0, 1.0)
+    assert module._of_slowest(left, SimpleNamespace(features={"motor_speed": speed})) == pytest.approx(3.0)
+    more = SimpleNamespace(features={"motor_speed": np.r_[speed, np.full(1000, 99.0)]})  # three hundred then
+    own = np.sqrt((200 * 9.0 + 100 * 1.0) / 300)
+    assert module._of_slowest(np.r_[left, np.ones(1000)], more) == pytest.approx(own)
+    few = SimpleNamespace(features={"motor_speed": speed[-300:-1]})
+    assert module._of_slowest(left[-300:-1], few) == pytest.approx(3.0)  # a hundred at least, of twice as many
+    assert module._of_slowest(left[-199:], SimpleNamespace(features={"motor_speed": speed[-199:]})) == 0.0
+    assert module._of_slowest(left, SimpleNamespace(features={})) == 0.0
 
 
 def test_noise_is_what_neither_a_late_signal_nor_its_change_leaves(monkeypatch):
@@ -375,7 +395,7 @@ def test_the_loss_of_a_run_is_the_median_of_what_is_left_along_its_motion():
     own = SimpleNamespace(
         runs=runs, blocks=blocks, after=np.array([2.0, -3.0, 90.0, 500.0, 4.0, 1.0]), before=np.full(6, 77.0)
     )
-    assert module._losses(own) == [(5.0, 3.0), (9.0, -4.0)]
+    assert drift._losses(own) == [(5.0, 3.0), (9.0, -4.0)]
 
 
 @pytest.mark.parametrize(
@@ -426,7 +446,7 @@ def test_a_proof_is_as_sure_as_one_in_forty(monkeypatch, chance, holds):
     monkeypatch.setattr(module, "worse_runs", lambda *_: ())
     fitted, named = side(1.0, before=3.0), side(0.5, before=3.0)
     for each in (fitted, named):
-        each.size_before, each.excused = Size(3.0, (2.9, 3.1)), each.floor
+        each.size_before, each.excused, each.slowest = Size(3.0, (2.9, 3.1)), each.floor, 0.0
     pairs = []
     monkeypatch.setattr(module, "chance_of_no_gain", lambda a, b, *_: pairs.append((abs(a[0]), abs(b[0]))) or chance)
     assert (not module.unproven("wave", fitted, named, np.random.default_rng(0))) is holds
@@ -442,5 +462,5 @@ def test_next_to_nothing_beside_a_refit_is_too_little_only_where_the_refit_is_at
     for least, holds in ((0.04, True), (0.25, False)):
         fitted = side(0.3, before=3.0, noise_floor=0.03, least_noise=least)
         for each in (fitted, named):
-            each.size_before, each.excused = Size(3.0, (2.9, 3.1)), each.floor
+            each.size_before, each.excused, each.slowest = Size(3.0, (2.9, 3.1)), each.floor, 0.0
         assert (not module.unproven("wave", fitted, named, np.random.default_rng(0))) is holds

@@ -60,11 +60,12 @@ def side(left=1.0, **more):
         "least_noise": 0.1,
         "floor": 1.0,
         "excused": 1.0,
+        "slowest": 0.0,
         "noise_floor": 1.0,
         "size_before": size,
         "size_after": size,
     }
-    return SimpleNamespace(**known, **more)
+    return SimpleNamespace(**known | more)
 
 
 @pytest.mark.parametrize("shows", [False, True])
@@ -101,7 +102,7 @@ def test_of_two_amounts_that_are_tied_in_the_file_each_may_be_none_but_not_both(
     file = SimpleNamespace(parameter_names=("K1", "a", "b"), covariance=np.eye(3))
     file.covariance[1, 2] = file.covariance[2, 1] = tied
     full = SimpleNamespace(repaired=SimpleNamespace(parameters=found, model=file))
-    assert bool(module._may_be_none((slot,), full, SimpleNamespace(holdout=side(1.2)))) is refused
+    assert bool(module.may_be_none((slot,), full, SimpleNamespace(holdout=side(1.2)))) is refused
 
 
 @pytest.mark.parametrize(("tied", "refused"), [(0.9, False), (0.5, True), (0.0, True)])
@@ -114,7 +115,7 @@ def test_an_amount_is_asked_with_its_shape_as_it_was_found(tied, refused):
     file = SimpleNamespace(parameter_names=("K1", "steepness", "a"), covariance=np.eye(3))
     file.covariance[1, 2] = file.covariance[2, 1] = tied
     full = SimpleNamespace(repaired=SimpleNamespace(parameters=found, model=file))
-    assert bool(module._may_be_none((slot,), full, SimpleNamespace(holdout=side(1.2)))) is refused
+    assert bool(module.may_be_none((slot,), full, SimpleNamespace(holdout=side(1.2)))) is refused
 
 
 def test_of_two_amounts_one_that_is_sure_is_enough():
@@ -124,7 +125,7 @@ def test_of_two_amounts_one_that_is_sure_is_enough():
     found = {"one": {"a": ParameterEstimate(3.1, 1.0, "1"), "b": ParameterEstimate(0.0, 1.0, "1")}}
     file = SimpleNamespace(parameter_names=("a", "b"), covariance=np.eye(2))
     full = SimpleNamespace(repaired=SimpleNamespace(parameters=found, model=file))
-    assert not module._may_be_none((slot,), full, SimpleNamespace(holdout=side(1.2)))
+    assert not module.may_be_none((slot,), full, SimpleNamespace(holdout=side(1.2)))
 
 
 @pytest.mark.parametrize(("left", "std", "refused"), [(1.2, 0.5, True), (1.2, 0.1, False), (3.0, 0.5, False)])
@@ -134,7 +135,7 @@ def test_an_amount_that_may_be_none_is_no_finding_where_a_refit_leaves_noise(lef
     slot = Slot("one", "", (0,), origin=(SimpleNamespace(linear=(amount, other)), Shape("")))
     found = {"one": {"a": ParameterEstimate(-1.0, std, "1"), "shape": ParameterEstimate(1.0, 0.0, "1")}}
     full = SimpleNamespace(repaired=SimpleNamespace(parameters=found, model=FILE))
-    why = module._may_be_none((slot,), full, SimpleNamespace(holdout=side(left)))
+    why = module.may_be_none((slot,), full, SimpleNamespace(holdout=side(left)))
     assert why.startswith("one: ") if refused else not why
 
 
@@ -146,7 +147,7 @@ def test_a_port_that_grows_much_faster_with_the_displacement_than_its_flow_is_no
     of = {"power": ("n_pp", "m_pp"), "one_way": ("n_po", "m_po")}[law]
     values = {name: ParameterEstimate(value, 0.1, "1") for name, value in zip(of, (n, m), strict=True)}
     rules = ("unproven", "leaves_too_much", "leaves_most", "fits_only_its_own", "within_a_sample", "within_a_step")
-    for name in (*rules, "within_load_cells", "told_by_chance", "_may_be_none"):
+    for name in (*rules, "within_load_cells", "told_by_chance", "may_be_none"):
         monkeypatch.setattr(module, name, lambda *_: "")
     search = searched(replace(SLOTS[0], name="port_turbulence"))
     full = Trial(search, SimpleNamespace(parameters={"port_turbulence": values}), side(), side())
@@ -180,7 +181,7 @@ def test_a_name_whose_amount_may_be_none_does_not_stand(monkeypatch):
     for name in (*rules, "within_load_cells", "told_by_chance"):
         monkeypatch.setattr(module, name, lambda *_: "")
     asked = []
-    monkeypatch.setattr(module, "_may_be_none", lambda *given: asked.append(given) or "it may be none")
+    monkeypatch.setattr(module, "may_be_none", lambda *given: asked.append(given) or "it may be none")
     search = searched(SLOTS[0])
     full, refit = Trial(search, SimpleNamespace(parameters={}), side(), side()), SimpleNamespace(holdout=side(3.0))
     assert module._stands(search, refit, lambda _: full, RNG) == (None, "it may be none")
@@ -190,7 +191,7 @@ def test_a_name_whose_amount_may_be_none_does_not_stand(monkeypatch):
 @pytest.mark.parametrize("opposing", [False, True])
 def test_a_name_that_load_cells_have_by_chance_does_not_stand_if_it_acts_one_way(monkeypatch, opposing):
     rules = ("unproven", "leaves_too_much", "leaves_most", "fits_only_its_own", "within_a_sample", "within_a_step")
-    for name in (*rules, "within_load_cells", "_may_be_none", "_chosen_not_whole"):
+    for name in (*rules, "within_load_cells", "may_be_none", "_chosen_not_whole"):
         monkeypatch.setattr(module, name, lambda *_: "")
     asked = []
     monkeypatch.setattr(module, "told_by_chance", lambda trial: asked.append(trial) or "by chance")
@@ -431,6 +432,33 @@ def test_without_a_name_it_is_said_which_runs_keep_more_than_noise(monkeypatch, 
     why = module._judged(trial, "a reason", None)
     assert why == f"a reason; a refit without a name leaves the {which} runs {left}, noise 1"
     assert module._judged(trial, "", None).startswith("a refit")
+
+
+@pytest.mark.parametrize("which", ["locked", "training"])
+def test_nothing_is_missing_only_where_the_slowest_blocks_keep_no_more_than_noise(monkeypatch, which):
+    """A break-away that no law told left 1.3 noises of the locked runs, and 2.6 of their slowest tenth."""
+    monkeypatch.setattr(module, "unexplained", lambda search, why, rng: why)
+    sides = {"locked": side(1.3), "training": side(1.2)}
+    quiet = Trial(searched(), None, sides["training"], sides["locked"])
+    assert module._judged(quiet, "", None).verdict.kind == NOTHING
+    sides[which] = side(1.3, slowest=1.9)
+    trial = Trial(searched(), None, sides["training"], sides["locked"])
+    assert module._judged(trial, "", None).verdict.kind == NOTHING
+    sides[which].slowest = 2.1
+    said = f"noise 1; the slowest tenth of the {which} ones keeps 2.1"
+    assert module._judged(trial, "", None).endswith(said)
+
+
+@pytest.mark.parametrize(("slowest", "refused"), [(1.2, True), (1.3, False)])
+def test_a_name_for_low_speeds_is_not_asked_what_it_takes_of_all(monkeypatch, slowest, refused):
+    rules = ("unproven", "leaves_too_much", "leaves_most", "fits_only_its_own", "within_a_sample", "within_a_step")
+    for name in (*rules, "within_load_cells", "told_by_chance", "may_be_none", "_chosen_not_whole"):
+        monkeypatch.setattr(module, name, lambda *_: "")
+    monkeypatch.setattr(module, "takes_little", lambda *_: True)
+    search = searched(SLOTS[0])
+    full = Trial(search, SimpleNamespace(parameters={}), side(), side())
+    trial, why = module._stands(search, SimpleNamespace(holdout=side(1.1, slowest=slowest)), lambda _: full, RNG)
+    assert (trial is None, "too little of the locked runs" in why) == (refused, refused)
 
 
 def test_a_file_says_who_made_it_of_what_and_by_which_chance():

@@ -111,6 +111,7 @@ class Side:
     noise_floor: float  # independent noise of the blocks
     least_noise: float  # what no balance closes better than
     relative: tuple[float, float]  # residual against drive torque, before and after
+    slowest: float = 0.0  # RMS that the slowest blocks keep after the repair; 0 where too few are known
 
     @property
     def floor(self) -> float:
@@ -125,8 +126,7 @@ class Side:
     @property
     def left_by_run(self) -> "list[tuple[PreparedRun, FloatArray]]":
         """Each run with what its blocks keep, in floors."""
-        floor = max(self.floor, 1e-12)
-        return [(run, self.after[self.blocks.run == k] / floor) for k, run in enumerate(self.runs)]
+        return [(run, self.after[self.blocks.run == k] / max(self.floor, 1e-12)) for k, run in enumerate(self.runs)]
 
     @property
     def most_left_first(self) -> dict[str, float]:

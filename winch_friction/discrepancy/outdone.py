@@ -1,11 +1,11 @@
 """Names that do not stand however well they fit: beside one law of the grammar that does by itself what they do, and
 where their own law in the file has become another cause's."""
 
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 
 import numpy as np
-from scipy.special import chdtrc, chdtri, fdtrc
+from scipy.special import fdtrc
 
 from winch_friction.discrepancy.candidates.candidate import Estimates
 from winch_friction.discrepancy.candidates.families import shapes_over
@@ -23,8 +23,8 @@ from winch_friction.discrepancy.regressors import PORT
 from winch_friction.discrepancy.search import refused
 from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.discrepancy.vocabulary import FALLING, PICKING, RISING, UNLIKE_A_CURVE
-from winch_friction.physics.friction import FrictionModel
 
+ABOUT_NOTHING = 0.5  # widths of a hump, up to which its middle may be away from zero: there it is nine tenths as high
 # signals of an equation by the proposals' word for them
 _SAME = {"speed_magnitude": "motor_speed", "pressure_sum": "pressure"}
 
@@ -60,19 +60,6 @@ def no_port(parameters: Mapping[str, Estimates]) -> str:
         return ""
     n, m = (next(v for name, v in found.items() if name.startswith(of)) for of in ("n_", "m_"))
     return f"{PORT}: a loss with speed^{n:.3g} and displacement^{m:.3g} is no port's, but of one group's flow"
-
-
-def surely_some(amounts: Estimates, file: FrictionModel, shapes: Collection[str] = ()) -> float:
-    """Standard deviations by which the amounts of a cause are some together, its `shapes` as they were found: of two
-    that a file ties each may be none, and yet not both, and of a steeper law a smaller amount is as much, but none of
-    it nothing. 0 where the file does not know how they are tied, as it does not of corrections."""
-    names, covariance = file.parameter_names, file.covariance
-    if covariance is None or not {*amounts, *shapes} <= {*names}:
-        return 0.0
-    at, given = ([names.index(name) for name in own] for own in (amounts, shapes))
-    value, across = np.array([a.value for a in amounts.values()]), covariance[np.ix_(at, given)]
-    own = covariance[np.ix_(at, at)] - across @ np.linalg.pinv(covariance[np.ix_(given, given)]) @ across.T
-    return float(np.sqrt(chdtri(1, chdtrc(len(at), value @ np.linalg.solve(own, value)))))
 
 
 def told_by_chance(trial: Trial) -> str:
@@ -173,9 +160,15 @@ def _could_be(scored: Scored, slot: Slot, closed: bool) -> bool:
     law, candidate = scored.law, slot.origin[0]
     alike = law.opposing == (candidate.term is not None and candidate.term.opposing)
     own = {_SAME.get(name, name) for name in candidate.signals} if alike else set()
-    unlike = {factor.kind for factor in law.factors} & set(UNLIKE_A_CURVE)
+    unlike = {*map(_kind, law.factors)} & set(UNLIKE_A_CURVE)
     bent = all(_bends_as(factor, scored, slot.name) for factor in law.factors)
     return set(law.signals) <= own and unlike <= ({"lag"} if closed else set()) and bent
+
+
+def _kind(factor: Factor) -> str:
+    """The kind of a factor; a hump about nearly nothing only falls, as Stribeck's curve does in its Gaussian form."""
+    at = dict(factor.constants)
+    return "fade" if factor.kind == "hump" and at["c"] < ABOUT_NOTHING * at["h"] else factor.kind
 
 
 def _bends_as(factor: Factor, scored: Scored, cause: str) -> bool:
@@ -185,10 +178,11 @@ def _bends_as(factor: Factor, scored: Scored, cause: str) -> bool:
     names = (name for name, word in _SAME.items() if word == factor.signal)
     shapes = set().union(*(shapes_over(cause, name) for name in (factor.signal, *names)))
     turned = scored.amount < 0.0 and (len(scored.law.factors) == 1 or factor.kind == "about")
-    rises = (factor.kind in RISING) != turned
-    if not shapes or factor.kind not in (*RISING, *FALLING):
+    kind = _kind(factor)
+    rises = (kind in RISING) != turned
+    if not shapes or kind not in (*RISING, *FALLING):
         return True
-    if shapes == {"convex_rising"} and factor.kind == "root" and rises:
+    if shapes == {"convex_rising"} and kind == "root" and rises:
         return False
     return shapes != {"falling"} if rises else "falling" in shapes
 

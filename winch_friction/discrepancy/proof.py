@@ -1,20 +1,21 @@
 """The proof: the repaired model's file, read back, against runs that nothing before has looked at.
 
 Before and after are evaluated alike: the file's corrections taken out, the balance closed with its terms, nothing
-fitted. What is claimed is what a user of the file gets. And what a loss that changes from run to run may come from when
-nobody logged a temperature.
+fitted. What is claimed is what a user of the file gets.
 """
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.special import stdtr
+from scipy.special import chdtrc, chdtri
 
 from winch_friction.discrepancy.answer import Side
+from winch_friction.discrepancy.candidates.candidate import Estimates
 from winch_friction.discrepancy.engine import FloatArray
-from winch_friction.discrepancy.engine.blocks import Blocks, RunBlocks, joined, run_blocks, segment_length
+from winch_friction.discrepancy.engine.blocks import Blocks, RunBlocks, Slot, joined, run_blocks, segment_length
 from winch_friction.discrepancy.engine.chance import Size, chance_of_no_gain, rms, rms_with_interval
+from winch_friction.discrepancy.engine.crossfit import on_their_own
 from winch_friction.discrepancy.engine.noise import Made, alike, noise_of_run
 from winch_friction.discrepancy.expansion import Given
 from winch_friction.discrepancy.preparation.prepare import PreparedRun
@@ -24,6 +25,8 @@ from winch_friction.discrepancy.search import Search
 from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.physics.friction import FrictionModel
 from winch_friction.records.model_file import model_from_text, model_to_text
+
+SURE = 3.0  # standard deviations of an amount, in a file, that surely is one
 
 
 @dataclass(frozen=True)
@@ -59,7 +62,7 @@ def unproven(named: str, refit: Side, repaired: Side, rng: np.random.Generator) 
     if removed < repaired.least_noise:
         return f"{named} takes {removed:.2g} off the locked gap, which is less than any balance closes"
     beside = float(np.sqrt(max(refit.size_after.value**2 - after.value**2, 0.0)))
-    if beside < LIMITS.beside_a_refit * repaired.least_noise and at_the_floor(refit):
+    if beside < LIMITS.beside_a_refit * repaired.least_noise and at_the_floor(refit) and not slow_shows(refit):
         why = f"takes {beside:.2g} off what the model's own parameters leave once fitted anew: too little for an effect"
         return f"{named} {why}"
     share = left_beside_a_refit(refit, repaired)
@@ -72,6 +75,33 @@ def unproven(named: str, refit: Side, repaired: Side, rng: np.random.Generator) 
     if worse := worse_runs(repaired, rng):
         return f"{named}: the gap of {', '.join(worse)} grows"
     return "" if len(repaired.blocks.y) else f"{named}: the locked runs have no usable block"
+
+
+def may_be_none(slots: Sequence[Slot], full: Trial, refit: Trial) -> str:
+    """Why a name is refused whose amounts are none of them sure, where a refit without it leaves the locked runs at
+    their floor: what it takes of the others is chance."""
+    if not at_the_floor(refit.holdout):
+        return ""
+    for slot in on_their_own(slots):
+        found, (candidate, shape) = full.repaired.parameters.get(slot.name, {}), slot.origin
+        amounts = {p.name: found[p.name] for p in candidate.linear if p.name in found}
+        unsure = all(abs(each.value) < SURE * each.std for each in amounts.values())
+        if amounts and unsure and _surely_some(amounts, full.repaired.model, {*shape.values} & {*found}) < SURE:
+            return f"{slot.name}: a refit without it leaves no more than noise, and its size may be none"
+    return ""
+
+
+def _surely_some(amounts: Estimates, file: FrictionModel, shapes: Collection[str] = ()) -> float:
+    """Standard deviations by which the amounts of a cause are some together, its `shapes` as they were found: of two
+    that a file ties each may be none, and yet not both, and of a steeper law a smaller amount is as much, but none of
+    it nothing. 0 where the file does not know how they are tied, as it does not of corrections."""
+    names, covariance = file.parameter_names, file.covariance
+    if covariance is None or not {*amounts, *shapes} <= {*names}:
+        return 0.0
+    at, given = ([names.index(name) for name in own] for own in (amounts, shapes))
+    value, across = np.array([a.value for a in amounts.values()]), covariance[np.ix_(at, given)]
+    own = covariance[np.ix_(at, at)] - across @ np.linalg.pinv(covariance[np.ix_(given, given)]) @ across.T
+    return float(np.sqrt(chdtri(1, chdtrc(len(at), value @ np.linalg.solve(own, value)))))
 
 
 def adds(fewer: Side, more: Side, rng: np.random.Generator) -> bool:
@@ -168,6 +198,11 @@ def nobodys(side: Side) -> bool:
     return side.size_after.value**2 <= (1.0 + LIMITS.least_excess) * side.floor**2
 
 
+def slow_shows(side: Side, most: float = LIMITS.slowest_left) -> bool:
+    """Whether what the slowest blocks keep is somebody's, however little it is of all of them."""
+    return side.slowest > most * side.floor
+
+
 def far_off(side: Side) -> bool:
     """Whether what is left is plainly more than noise and what no balance closes, however few segments show it."""
     return side.size_after.value > LIMITS.far_off_the_floor * side.floor
@@ -180,6 +215,9 @@ def _common(refit: Side, repaired: Side) -> tuple[FloatArray, FloatArray, np.nda
     pairs = np.array([(places[key], k) for k, key in enumerate(keys[1]) if key in places], int).reshape(-1, 2)
     first, second, own = *pairs.T, repaired.blocks
     return refit.after[first], repaired.after[second], own.segment[second], own.run[second]
+
+
+TINY = 1e-300  # against a division by nothing
 
 
 def _relative(residual: FloatArray, drive: FloatArray) -> float:
@@ -214,8 +252,15 @@ def beside(before: Given, after: Given, names: Sequence[str]) -> Side:
     return Side(
         runs=tuple(old for old, _ in pairs), blocks=blocks, before=y_before, after=y_after,
         size_before=untold, size_after=untold, noise_floor=floor, least_noise=closes,
-        relative=(_relative(y_before, torque), _relative(y_after, torque)),
+        relative=(_relative(y_before, torque), _relative(y_after, torque)), slowest=_of_slowest(y_after, blocks),
     )  # fmt: skip
+
+
+def _of_slowest(values: FloatArray, blocks: Blocks) -> float:
+    """RMS over the slowest blocks, 0 where fewer than twice as many as these are known."""
+    speed = np.abs(blocks.features.get("motor_speed", np.empty(0)))
+    count = max(int(LIMITS.slowest * len(speed)), LIMITS.fewest_slowest)
+    return rms(values[np.argsort(speed, kind="stable")[:count]]) if len(speed) >= 2 * count else 0.0
 
 
 def _blocks(old: PreparedRun, new: PreparedRun, length: float) -> RunBlocks:
@@ -243,58 +288,3 @@ def _noise(values: FloatArray, skew: FloatArray, blocks: Blocks, k: int, least: 
 def drive_of(run: PreparedRun) -> float:
     """RMS of a run's measured drive while moving, in the gap's unit."""
     return rms(run.drive_torque[run.used] / run.unit_torque)
-
-
-# -- from run to run
-HOUR = 3600.0  # s
-FEWEST_RUNS = 6  # fewer lie on a line by chance
-TINY = 1e-300  # against a division by nothing
-SURE = 0.01  # chance that runs of a constant loss seem to drift
-MATTERS = 0.02  # of the drive, over the whole time: less is no one's concern
-EXPLAINED = ("wear_drift", "viscosity_temperature")
-
-
-def drift_note(sides: Sequence[Side], named: Sequence[str], unit: str) -> str:
-    """What the loss beyond the model does over the runs' dates, in a sentence; '' where it stays or is told apart.
-
-    Warming oil and running-in or wear make the same slow change: only a temperature in the log tells them apart, and
-    with one the effects themselves are looked for.
-    """
-    runs = [run for side in sides for run in side.runs]
-    if len(runs) < FEWEST_RUNS or set(named) & set(EXPLAINED) or any("oil_temperature" in r.present for r in runs):
-        return ""
-    points = [point for side in sides for point in _losses(side)]
-    start, loss = np.array(points).T if points else (np.empty(0), np.empty(0))
-    hours = (start - start.min()) / HOUR if len(start) else start
-    if len(hours) < FEWEST_RUNS or np.ptp(hours) <= 0.0:
-        return ""
-    slope, std = _line(hours, loss)
-    drive = float(np.mean([drive_of(run) for run in runs]))
-    change = slope * np.ptp(hours)
-    p_value = 2.0 * float(stdtr(len(hours) - 2, -abs(slope) / std))
-    if p_value > SURE or abs(change) < MATTERS * drive:
-        return ""
-    return (
-        f"over {np.ptp(hours):.1f} h the loss along the motion changes by {change:+.3g} ± "
-        f"{1.96 * std * np.ptp(hours):.2g} {unit} (95 %, p = {p_value:.1g}): undecided between temperature "
-        "and wear, for no oil_temperature was logged; log it, or repeat a run cold and warm"
-    )
-
-
-def _line(x: FloatArray, y: FloatArray) -> tuple[float, float]:
-    """Slope of the straight line through points and its standard deviation."""
-    away = x - x.mean()
-    square = float(away @ away)
-    slope = float(away @ y) / square
-    left = y - y.mean() - slope * away
-    return slope, max(float(np.sqrt(left @ left / (len(x) - 2) / square)), TINY)
-
-
-def _losses(side: Side) -> list[tuple[float, float]]:
-    """Start in s and the median of what is left along the motion, of every run."""
-    found = []
-    for k, run in enumerate(side.runs):
-        own = (side.blocks.run == k) & (side.blocks.direction != 0.0)
-        if own.any():
-            found.append((run.start, float(np.median(side.after[own] * side.blocks.direction[own]))))
-    return found

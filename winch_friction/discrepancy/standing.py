@@ -17,7 +17,7 @@ from winch_friction.discrepancy.engine.crossfit import left_of_first_halves, on_
 from winch_friction.discrepancy.engine.selection import select, with_fewer
 from winch_friction.discrepancy.estimates import takes_little, within_a_sample, within_a_step
 from winch_friction.discrepancy.expansion import Given, Split, meet
-from winch_friction.discrepancy.outdone import no_port, one_law, surely_some, told_by_chance
+from winch_friction.discrepancy.outdone import no_port, one_law, told_by_chance
 from winch_friction.discrepancy.proof import (
     Trial,
     at_the_floor,
@@ -27,9 +27,11 @@ from winch_friction.discrepancy.proof import (
     fits_only_its_own,
     leaves_most,
     leaves_too_much,
+    may_be_none,
     nobodys,
     read_back,
     sized,
+    slow_shows,
     unproven,
     worse_runs,
 )
@@ -41,7 +43,6 @@ from winch_friction.discrepancy.several import at_reversals, by_reversals, each_
 from winch_friction.discrepancy.thresholds import LIMITS
 
 _TrialOf = Callable[[Search], Trial]
-SURE = 3.0  # standard deviations of an amount, in a file, that surely is one
 
 
 def standing(study: Study, search: Search) -> Trial:
@@ -139,7 +140,8 @@ def _stands(search: Search, refit: Trial, trial_of: _TrialOf, rng: np.random.Gen
     if not slots:  # just after reversals a gap of its own has shrunk; the moving samples need only stay as they are
         worse = ", ".join(worse_runs(full.holdout, rng))
         return (None, f"{names}: the gap of {worse} grows") if worse else (full, "")
-    if nobodys(refit.holdout) and takes_little(search.cross, search.selection.base, search.explanation):
+    few = nobodys(refit.holdout) and not slow_shows(refit.holdout)
+    if few and takes_little(search.cross, search.selection.base, search.explanation):
         why = "the model's own parameters, fitted anew, leave too little of the locked runs for an effect"
         return None, f"{names}: {why}, and of the others this takes hardly more"
     rivals, least = search.selection.found[0].rivals if len(slots) == 1 else (), full.holdout.least_noise
@@ -150,27 +152,13 @@ def _stands(search: Search, refit: Trial, trial_of: _TrialOf, rng: np.random.Gen
         or fits_only_its_own(full.train, full.holdout)
         or within_a_sample(full.repaired.parameters, full.holdout)
         or (no_port(full.repaired.parameters) if PORT in search.explanation.names else "")
-        or _may_be_none(slots, full, refit)
+        or may_be_none(slots, full, refit)
         or _chosen_not_whole(slots, full.holdout)
         or within_a_step(cross, fitted := [search.explanation, *(cross.explain((each,)) for each in rivals)], least)
         or within_load_cells(cross, fitted, least)
         or ("" if all(slot.origin[0].opposing for slot in slots) else told_by_chance(full))
     )
     return (None, why) if why else (full, "")
-
-
-def _may_be_none(slots: Sequence[Slot], full: Trial, refit: Trial) -> str:
-    """Why a name is refused whose amounts are none of them sure, where a refit without it leaves the locked runs at
-    their floor: what it takes of the others is chance."""
-    if not at_the_floor(refit.holdout):
-        return ""
-    for slot in on_their_own(slots):
-        found, (candidate, shape) = full.repaired.parameters.get(slot.name, {}), slot.origin
-        amounts = {p.name: found[p.name] for p in candidate.linear if p.name in found}
-        unsure = all(abs(each.value) < SURE * each.std for each in amounts.values())
-        if amounts and unsure and surely_some(amounts, full.repaired.model, {*shape.values} & {*found}) < SURE:
-            return f"{slot.name}: a refit without it leaves no more than noise, and its size may be none"
-    return ""
 
 
 def _chosen_not_whole(slots: Sequence[Slot], locked: Side) -> str:
@@ -224,15 +212,19 @@ def not_borne_out(search: Search, stands: Search) -> list[str]:
 
 def _judged(trial: Trial, why: str, rng: np.random.Generator) -> Search:
     """Without a name for the moving samples: nothing is missing only where the locked runs are at their noise, and the
-    others, one of which may have met what none of the locked runs did, are not far off it. What the search found to be
-    no effect of a plausible size tells of something only where the file leaves more than noise somewhere."""
-    search = trial.search
-    told = search.verdict.kind == UNEXPLAINED and not all(map(nobodys, (trial.train, trial.holdout)))
-    if not told and at_the_floor(trial.holdout) and not far_off(trial.train):
+    others, one of which may have met what none of the locked runs did, are not far off it, nor the slowest tenth of
+    either. What the search found to be no effect of a plausible size tells of something only where the file leaves more
+    than noise somewhere."""
+    search, sides = trial.search, {"locked": trial.holdout, "training": trial.train}
+    told = search.verdict.kind == UNEXPLAINED and not all(map(nobodys, sides.values()))
+    slow = next((which for which, side in sides.items() if slow_shows(side, LIMITS.far_off_the_floor)), "")
+    if not told and not slow and at_the_floor(trial.holdout) and not far_off(trial.train):
         found = search.ripple or search.flow
         return replace(search, verdict=Verdict(MISSING if found else NOTHING, why))
-    side, which = (trial.train, "training") if at_the_floor(trial.holdout) else (trial.holdout, "locked")
+    side = sides[which := "training" if at_the_floor(trial.holdout) else "locked"]
     kept = f"a refit without a name leaves the {which} runs {side.size_after.value:.3g}, noise {side.noise_floor:.3g}"
+    if slow:
+        kept = f"{kept}; the slowest tenth of the {slow} ones keeps {sides[slow].slowest:.3g}"
     return unexplained(search, "; ".join(filter(None, (why, kept))), rng)
 
 

@@ -158,6 +158,13 @@ class Thresholds:
     # times what names leave of the training runs, each beside its floor: that and more of the locked runs is left by
     # what fits the runs that it was chosen on and no others. Right names left up to 2.1 times as much, over ten draws
     chosen_on: float = 2.5
+    # of the blocks by speed, and at least so many, that are looked at by themselves: a fifteenth of a wave is slower
+    # than 230 rpm, and what acts there alone, some bar, is next to nothing of all of it
+    slowest: float = 0.1
+    fewest_slowest: int = 100
+    # times the floor, that these may keep where nothing is missing: of 70 nulls at most 1.13, of break-aways that were
+    # missed 1.4 to 2.6
+    slowest_left: float = 1.25
     # -- regions
     most_regions: int = 3
     smallest_region: float = 0.03  # of the blocks

@@ -21,6 +21,7 @@ from winch_friction.discrepancy.answer import (
     unexplained_share,
 )
 from winch_friction.discrepancy.candidates.candidate import Candidate
+from winch_friction.discrepancy.drift import drift_note
 from winch_friction.discrepancy.engine.selection import TAKEN, Considered, Finding, Selection
 from winch_friction.discrepancy.estimates import try_seed, widened
 from winch_friction.discrepancy.expansion import Given, meet, swings
@@ -34,7 +35,7 @@ from winch_friction.discrepancy.next_experiment import (
 )
 from winch_friction.discrepancy.preparation.grid import beside_climbs, thinned
 from winch_friction.discrepancy.preparation.own_simulation import SIMULATED, against_simulations
-from winch_friction.discrepancy.proof import Trial, at_the_floor, drift_note, far_off, nobodys
+from winch_friction.discrepancy.proof import Trial, at_the_floor, far_off, nobodys
 from winch_friction.discrepancy.proposals import Proposal, explained, propose
 from winch_friction.discrepancy.repair import REFITTED, REPAIRED, Repair
 from winch_friction.discrepancy.search import Search, Study, search_runs
@@ -123,7 +124,7 @@ def find_gap(runs: Sequence[Run], crane: Crane, model: FrictionModel, options: G
 
 def _once_more(study: Study, given: Given, trial: Trial, search: Search) -> tuple[Study, Trial]:
     """What is open, asked again by every way that may say more than what stands."""
-    study, trial = again.by_lost_speed(study, trial, search)
+    study, trial = again.by_lost_speed(study, trial, search) if search.flow else (study, trial)
     if trial.search.verdict.kind != NOTHING and not study.options.candidates:
         study, trial = _with_other_runs(study, trial)
         if trial.search.verdict.kind == UNEXPLAINED and search.verdict.kind in (MISSING, AMBIGUOUS):
@@ -225,8 +226,7 @@ def _experiment(crane: Crane, search: Search, options: GapOptions) -> NextExperi
     """For the first effect that has rivals; an electric drive has no scenario family."""
     if search.verdict.kind != AMBIGUOUS or not crane.drive.hydraulic:
         return None
-    own = next(each for each in search.selection.found if each.rivals)
-    fitted = search.selection.final
+    own, fitted = next(each for each in search.selection.found if each.rivals), search.selection.final
     return plan_experiment(crane, search.expansion, search.cross, fitted, own.slot, own.rivals, options.seed)
 
 

@@ -361,7 +361,8 @@ def test_two_models_are_compared_over_the_runs_that_were_asked(monkeypatch):
 
 def test_the_slowest_blocks_are_a_tenth_and_enough_to_tell():
     """Whichever way they move."""
-    speed = np.r_[np.linspace(50.0, 60.0, 1800), np.linspace(-2.0, -1.0, 100), np.linspace(1.0, 2.0, 100)]
+    slow = np.r_[np.linspace(-2.0, -1.0, 100), np.linspace(1.0, 2.0, 100)]
+    speed = np.r_[np.linspace(50.0, 60.0, 900), np.linspace(-60.0, -50.0, 900), slow]
     left = np.where(np.abs(speed) < 3.0, 3.0, 1.0)
     assert module._of_slowest(left, SimpleNamespace(features={"motor_speed": speed})) == pytest.approx(3.0)
     more = SimpleNamespace(features={"motor_speed": np.r_[speed, np.full(1000, 99.0)]})  # three hundred then

@@ -211,7 +211,7 @@ def test_what_has_several_names_is_held_against_an_error_of_one_group_as_what_ha
     monkeypatch.setattr(again, "without_implausible", lambda study, found, _: found)
     monkeypatch.setattr(again, "by_beyond", lambda study, found, _: (study, found))
     monkeypatch.setattr(again, "by_levels", lambda study, found: (study, found))
-    monkeypatch.setattr(workflow, "_with_other_runs", lambda study, found: (study, found))
+    monkeypatch.setattr(again, "by_other_runs", lambda study, found: (study, found))
     monkeypatch.setattr(workflow, "_surfaces_may_say_more", lambda search: False)
     monkeypatch.setattr(workflow, "swings", lambda given: False)
     study = SimpleNamespace(options=SimpleNamespace(candidates=(), told=lambda what: None))
@@ -301,11 +301,17 @@ def test_a_law_of_the_data_stands_where_it_leaves_half_of_what_names_do(monkeypa
     monkeypatch.setattr(
         again, "adds", lambda fewer, more, rng: adds and fewer is before.holdout and more is other.holdout
     )
-    assert (again.by_surfaces(STUDY, before) is other) is taken
+    others = []
+    monkeypatch.setattr(again, "by_other_runs", lambda *given: others.append(given) or given[:2])
+    assert (again.by_surfaces(STUDY, before)[1] is other) is taken
+    refused = first == other.search.verdict.kind == UNEXPLAINED  # perhaps only for what none of the locked runs shows
+    assert [(study, trial, also.func) for study, trial, also in others] == [
+        (STUDY, before, again.free_members)
+    ] * refused
     assert (asked[0].func, asked[0].keywords) == (again.free_members, {"rows": again.SURFACES})
     assert asked[1:] in ([], [found])
     selection.found.clear()
-    assert again.by_surfaces(STUDY, before) is before  # the data know none
+    assert again.by_surfaces(STUDY, before) == (STUDY, before)  # the data know none
 
 
 def test_effects_stand_in_the_order_in_which_they_were_found(monkeypatch):

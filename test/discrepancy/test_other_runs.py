@@ -42,15 +42,19 @@ def asked(monkeypatch):
 
     def answer(other):
         splits = []
-        monkeypatch.setattr(again, "search_runs", lambda study, *_: splits.append(study.split))
-        monkeypatch.setattr(again, "standing", lambda *_: other)
+        monkeypatch.setattr(again, "search_runs", lambda study, _, also: splits.append(study.split) or also)
+        monkeypatch.setattr(again, "standing", lambda study, also: drawn.append(also) or other)
+        drawn.clear()
         return splits
 
     return answer
 
 
-def looked(before):
-    study, after = workflow._with_other_runs(Study(SPLIT, None, GapOptions(), np.random.default_rng(0)), before)
+drawn = []  # what a second search was given beside the catalogue
+
+
+def looked(before, *also):
+    study, after = again.by_other_runs(Study(SPLIT, None, GapOptions(), np.random.default_rng(0)), before, *also)
     return study.split, after
 
 
@@ -76,6 +80,9 @@ def test_every_second_run_that_shows_something_is_locked(asked, by_run, locked):
     assert split.train == tuple(run.name for run in RUNS if run.name not in locked)
     assert splits == [split]
     assert after is proven
+    assert drawn == [None]
+    looked(before, "curves")
+    assert drawn == [None, "curves"]
 
 
 @pytest.mark.parametrize(
@@ -156,8 +163,8 @@ def test_only_names_that_fell_are_asked_beyond(monkeypatch, kind, searched, aske
     before = trial(kind, FAR)
     monkeypatch.setattr(workflow.again, "by_lost_speed", lambda study, own, _: leaks.append(own) or (study, own))
     monkeypatch.setattr(workflow.again, "by_beyond", lambda study, own, _: calls.append("beyond") or (study, own))
-    for name in ("by_groups", "by_surfaces"):
-        monkeypatch.setattr(workflow.again, name, lambda study, own: own)
+    monkeypatch.setattr(workflow.again, "by_groups", lambda study, own: own)
+    monkeypatch.setattr(workflow.again, "by_surfaces", lambda study, own: (study, own))
     monkeypatch.setattr(workflow.again, "without_implausible", lambda study, own, _: own)
     monkeypatch.setattr(workflow.again, "by_levels", lambda study, own: (study, own))
     monkeypatch.setattr(workflow, "swings", lambda _: False)

@@ -84,9 +84,9 @@ def answers(monkeypatch):
         monkeypatch.setattr(module, "standing", standing)
         monkeypatch.setattr(module, "swings", lambda given: given.swings)
         monkeypatch.setattr(module, "meet", lambda runs, crane, file, *_: ELASTIC if file == STILL_SWINGS else RIGID)
-    monkeypatch.setattr(workflow, "_with_other_runs", lambda study, trial: (study, trial))
-    for step in ("by_surfaces", "by_groups"):
-        monkeypatch.setattr(again, step, lambda study, trial: trial)
+    for step in ("by_surfaces", "by_other_runs"):
+        monkeypatch.setattr(again, step, lambda study, trial: (study, trial))
+    monkeypatch.setattr(again, "by_groups", lambda study, trial: trial)
     monkeypatch.setattr(again, "without_implausible", lambda study, trial, _: trial)
     monkeypatch.setattr(workflow, "_surfaces_may_say_more", lambda search: True)
     monkeypatch.setattr(again, "as_rigid", lambda given: RIGID)

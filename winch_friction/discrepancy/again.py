@@ -32,7 +32,7 @@ from winch_friction.discrepancy.proof import (
     worse_runs,
 )
 from winch_friction.discrepancy.run_states import EACH_RUN
-from winch_friction.discrepancy.search import Search, Study, every_candidate, search_runs
+from winch_friction.discrepancy.search import LastResort, Search, Study, every_candidate, search_runs
 from winch_friction.discrepancy.standing import standing, tried
 from winch_friction.discrepancy.thresholds import LIMITS
 from winch_friction.physics.signals import Run
@@ -43,21 +43,21 @@ MOSTLY_LEVELS = 0.7  # of what is left above the noise, that is levels where a n
 LEAST_EACH_WAY = 0.05  # of a run's samples, hoisting and lowering: of one way alone nobody tells a load from friction
 
 
-def by_surfaces(study: Study, trial: Trial) -> Trial:
-    """What no known law explains, or one name's law not well, once more with laws that only the data know; the trial as
-    it is where that does not end in a proven name that leaves surely less."""
-    given = trial.search
+def by_surfaces(study: Study, trial: Trial) -> tuple[Study, Trial]:
+    """What no known law explains, or one name's law not well, once more with laws that only the data know; study and
+    trial as they are where that does not end in a proven name that leaves surely less, with others locked either."""
+    given, drawn = trial.search, partial(free_members, rows=SURFACES)
     named = given.verdict.kind in (MISSING, AMBIGUOUS)
-    search = search_runs(study, given.given, partial(free_members, rows=SURFACES))
+    search = search_runs(study, given.given, drawn)
     if not search.selection.found:
-        return trial
+        return study, trial
     left = given.cross.excess(given.explanation)
     if named and search.cross.excess(search.selection.final) > LIMITS.outdone * left:
-        return trial
+        return study, trial
     other = standing(study, search)
     if other.search.verdict.kind not in (MISSING, AMBIGUOUS):
-        return trial
-    return other if not named or adds(trial.holdout, other.holdout, study.rng) else trial
+        return (study, trial) if named else by_other_runs(study, trial, drawn)
+    return study, other if not named or adds(trial.holdout, other.holdout, study.rng) else trial
 
 
 def by_groups(study: Study, trial: Trial) -> Trial:
@@ -111,15 +111,17 @@ def by_runs(study: Study, trial: Trial) -> Trial:
     return _closing(study, search, trial)
 
 
-def by_other_runs(study: Study, trial: Trial, showing: Sequence[str]) -> tuple[Study, Trial]:
-    """What the training runs show and the locked ones show nothing of, once more with some of the former locked: what
-    is not in a run proves no name. Study and trial as they are unless names stand, the former ones among them, that
-    bring these locked runs to their floor and all the others, in which the first ones are now, near theirs.
-
-    `showing`: the training runs that show something, most first.
+def by_other_runs(study: Study, trial: Trial, also: LastResort | None = None) -> tuple[Study, Trial]:
+    """What two training runs or more show and the locked ones show nothing of, once more with some of the former
+    locked: what is not in a run proves no name, and one run alone is not learned from and proven on. Study and trial as
+    they are unless names stand, the former ones among them, that bring these locked runs to their floor and all the
+    others, in which the first ones are now, near theirs.
     """
+    showing = [name for name, left in trial.train.most_left_first.items() if left > LIMITS.far_off_the_floor]
+    if not at_the_floor(trial.holdout) or len(showing) < 2:
+        return study, trial
     other = replace(study, split=_locking(study.split, showing, study.split.holdout))
-    proven = _closing(other, search_runs(other, trial.search.given), trial)
+    proven = _closing(other, search_runs(other, trial.search.given, also), trial)
     named, before = (set(each.search.explanation.names) for each in (proven, trial))
     return (other, proven) if proven is not trial and before < named else (study, trial)
 

@@ -35,7 +35,7 @@ from winch_friction.discrepancy.next_experiment import (
 )
 from winch_friction.discrepancy.preparation.grid import beside_climbs, thinned
 from winch_friction.discrepancy.preparation.own_simulation import SIMULATED, against_simulations
-from winch_friction.discrepancy.proof import Trial, at_the_floor, far_off, nobodys
+from winch_friction.discrepancy.proof import Trial, far_off, nobodys
 from winch_friction.discrepancy.proposals import Proposal, explained, propose
 from winch_friction.discrepancy.repair import REFITTED, REPAIRED, Repair
 from winch_friction.discrepancy.search import Search, Study, search_runs
@@ -126,27 +126,20 @@ def _once_more(study: Study, given: Given, trial: Trial, search: Search) -> tupl
     """What is open, asked again by every way that may say more than what stands."""
     study, trial = again.by_lost_speed(study, trial, search) if search.flow else (study, trial)
     if trial.search.verdict.kind != NOTHING and not study.options.candidates:
-        study, trial = _with_other_runs(study, trial)
+        study, trial = again.by_other_runs(study, trial)
         if trial.search.verdict.kind == UNEXPLAINED and search.verdict.kind in (MISSING, AMBIGUOUS):
             study, trial = again.by_beyond(study, trial, search)
         if trial.search.verdict.kind == UNEXPLAINED or len(trial.search.explanation.names) > 1:
             trial = again.by_groups(study, again.without_implausible(study, trial, search))
         if trial.search.verdict.kind != NOTHING:
             study.options.told("drawing surfaces")
-            trial = again.by_surfaces(study, trial) if _surfaces_may_say_more(trial.search) else trial
+            if _surfaces_may_say_more(trial.search):
+                study, trial = again.by_surfaces(study, trial)
     if trial.search.verdict.kind == UNEXPLAINED and swings(given):
         study.options.told("searching without a swing of the load")
         trial = again.without_swing(study, given, trial)
     one_way = not all(slot.origin[0].opposing for slot in trial.search.explanation.slots)
     return again.by_levels(study, trial) if one_way or trial.search.verdict.kind == UNEXPLAINED else (study, trial)
-
-
-def _with_other_runs(study: Study, trial: Trial) -> tuple[Study, Trial]:
-    """With others locked, where two training runs or more show what no locked one does: one alone proves nothing."""
-    if not at_the_floor(trial.holdout):
-        return study, trial
-    showing = [name for name, left in trial.train.most_left_first.items() if left > LIMITS.far_off_the_floor]
-    return again.by_other_runs(study, trial, showing) if len(showing) > 1 else (study, trial)
 
 
 def _surfaces_may_say_more(search: Search) -> bool:

@@ -87,6 +87,8 @@ def test_another_name_of_that_size_is_none_of_a_transducers_zeros():
         (-7e-4, 1.5e-5, 0.02, -8e-4, True),  # with what the base grants beyond a calibrated cell's tolerance
         (-7e-4, 1.5e-5, 0.2, 2e-4, True),  # no level alone: it changes within the runs
         (0.0, 0.0, 0.0, 0.0, False),
+        (0.0, 1.5e-5, 0.09, 2e-4, True),  # friction, of which a little is levels, as a break-away's at low speed is
+        (-2e-4, 0.0, 0.03, 2e-4, False),
     ],
 )
 def test_levels_that_load_cells_repeat_to_are_no_name(share, warmth, friction, granted, named):

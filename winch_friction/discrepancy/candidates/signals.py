@@ -201,8 +201,8 @@ def within_load_cells(cross: CrossFit, fitted: Sequence[Explanation], least: flo
 
     Together with what the base grants it is within a calibrated cell's tolerance in the mean of the runs, about which
     it scatters by no more than cells repeat to (of a dozen draws the root mean square is beyond 1.5 sigma once in a
-    hundred), and beside such levels it is less than no balance closes, `least`, in the gap's unit. Of a dozen runs
-    whose cells are off by so much some signal of one value in each tells the order.
+    hundred), such levels are most of it, and beside them it is less than no balance closes, `least`, in the gap's unit.
+    Of a dozen runs whose cells are off by so much some signal of one value in each tells the order.
     """
     problem, blocks = cross.problem, cross.problem.blocks
     if (weight := of_base(problem, WEIGHT)) is None:
@@ -211,10 +211,11 @@ def within_load_cells(cross: CrossFit, fitted: Sequence[Explanation], least: flo
     repeats = LIMITS.at_the_floor * LIMITS.least_share_of_load
     for each in (one for one in fitted if one.slots):
         torque = blocks.x[:, list(problem.columns(each.slots)[count:])] @ each.beta[count:]
-        shares, torque = shares_by_run(torque, weight, blocks.run)
+        shares, beside = shares_by_run(torque, weight, blocks.run)
         scatter = float(np.std(shares))
         level = abs(float(np.mean(shares)) + float(each.beta[at]) * problem.base.scale[at])
         most = float(problem.base.upper[at] * problem.base.scale[at])
-        if scatter <= repeats and level <= most and float(np.sqrt(np.mean(torque**2))) <= least:
+        of_levels = 2.0 * float(np.mean(beside**2)) <= float(np.mean(torque**2))
+        if of_levels and scatter <= repeats and level <= most and float(np.sqrt(np.mean(beside**2))) <= least:
             return f"{100 * scatter:.2g} % of the load from run to run is what load cells repeat to, and no name"
     return ""

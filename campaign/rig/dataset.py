@@ -21,6 +21,7 @@ from campaign.rig.world import SHIPPED, World, draw_world
 
 Columns = dict[str, np.ndarray]
 EPOCH = 1_700_000_000.0  # Unix time of the first run
+APART = 300.0  # s between the starts of two runs at least: the longest takes 240
 SETTLES = 6.0  # how many times over all dates what creeps comes nearer by a factor of e
 DRAINS_IN = 40.0  # s, by when all but a part in e of what waits between PLC and logger is worked off
 WANDERS_IN = 70.0  # s, from one quiet time of the network to the next
@@ -127,6 +128,8 @@ def _plans(style: Flavour, rng: np.random.Generator) -> list[Plan]:
     loads = [*style.loads, *style.ahc_loads]
     displacements = [*style.displacements, *style.ahc_displacements]
     days = np.concatenate([[0.0], np.sort(rng.uniform(0, 1, 10)), [1.0]])
+    for k in range(1, 12):  # one winch makes one run at a time
+        days[k] = max(days[k], days[k - 1] + APART / 86400 / style.days)
     days = days[rng.permutation(12)]
     celsius = rng.permutation(np.linspace(*style.temperatures, 12))
     layers = rng.permutation(np.resize(style.layers, 12))

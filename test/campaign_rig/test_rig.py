@@ -65,6 +65,12 @@ def test_a_run_holds_what_the_contract_names():
         assert abs(travelled) < 0.05
 
 
+def test_one_winch_makes_one_run_at_a_time():
+    """Two runs of a crane of this seed, another load on the hook of each, went on for three minutes together."""
+    starts = np.sort([columns["time"][0] for columns in rig.make_dataset(79000257, rig.DRAWN, length=SHORT)])
+    assert np.diff(starts).min() >= 299.0
+
+
 def test_a_seed_is_one_crane_and_another_seed_another():
     first, again, other = (rig.make_dataset(seed, "paper", length=SHORT) for seed in (7, 7, 8))
     assert all(np.array_equal(first[0][name], again[0][name]) for name in first[0])

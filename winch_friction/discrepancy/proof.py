@@ -61,7 +61,7 @@ def unproven(named: str, refit: Side, repaired: Side, rng: np.random.Generator) 
     removed = float(np.sqrt(before.value**2 - after.value**2))
     if removed < repaired.least_noise:
         return f"{named} takes {removed:.2g} off the locked gap, which is less than any balance closes"
-    beside = float(np.sqrt(max(refit.size_after.value**2 - after.value**2, 0.0)))
+    beside = _beside_a_refit(refit, repaired)
     if beside < LIMITS.beside_a_refit * repaired.least_noise and at_the_floor(refit) and not slow_shows(refit):
         why = f"takes {beside:.2g} off what the model's own parameters leave once fitted anew: too little for an effect"
         return f"{named} {why}"
@@ -79,8 +79,9 @@ def unproven(named: str, refit: Side, repaired: Side, rng: np.random.Generator) 
 
 def may_be_none(slots: Sequence[Slot], full: Trial, refit: Trial) -> str:
     """Why a name is refused whose amounts are none of them sure, where a refit without it leaves the locked runs at
-    their floor: what it takes of the others is chance."""
-    if not at_the_floor(refit.holdout):
+    their floor, and it takes less off what that leaves than a balance can tell: what it takes of the others is chance.
+    """
+    if not at_the_floor(refit.holdout) or _beside_a_refit(refit.holdout, full.holdout) > full.holdout.least_noise:
         return ""
     for slot in on_their_own(slots):
         found, (candidate, shape) = full.repaired.parameters.get(slot.name, {}), slot.origin
@@ -102,6 +103,11 @@ def _surely_some(amounts: Estimates, file: FrictionModel, shapes: Collection[str
     value, across = np.array([a.value for a in amounts.values()]), covariance[np.ix_(at, given)]
     own = covariance[np.ix_(at, at)] - across @ np.linalg.pinv(covariance[np.ix_(given, given)]) @ across.T
     return float(np.sqrt(chdtri(1, chdtrc(len(at), value @ np.linalg.solve(own, value)))))
+
+
+def _beside_a_refit(refit: Side, repaired: Side) -> float:
+    """What names take off the locked gap that a mere refit leaves."""
+    return float(np.sqrt(max(refit.size_after.value**2 - repaired.size_after.value**2, 0.0)))
 
 
 def adds(fewer: Side, more: Side, rng: np.random.Generator) -> bool:

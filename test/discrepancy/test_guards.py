@@ -959,6 +959,19 @@ def test_a_refit_led_astray_says_nothing_of_a_model_that_leaves_noise(monkeypatc
     assert standing_module.standing(STUDY, search).search.verdict.kind == kind
 
 
+def test_beside_a_ripple_the_given_model_does_not_speak_for_nothing(monkeypatch):
+    """Where it is not taken out it counts as noise: a floor of 1.25 bar, beneath which "nothing is missing", was one of
+    0.3 and a ripple that held in all locked runs."""
+    cross = crossfit(noise())
+    none = cross.explain(())
+    search = _Whole(cross, Selection(none, none, ()), Verdict(NOTHING), flow=("a leak",))
+    astray, given = side(noise(), 3.0 * WAVE + noise(1)), side(noise(), noise(1))
+    monkeypatch.setattr(standing_module, "_replicated", lambda own, *_: own)
+    monkeypatch.setattr(standing_module, "tried", lambda _, own: Trial(own, None, astray, astray))
+    monkeypatch.setattr(standing_module, "as_given", lambda _, own: Trial(own, None, given, given))
+    assert standing_module.standing(STUDY, search).search.verdict.kind == UNEXPLAINED
+
+
 def standing_of(monkeypatch, trial, refit):
     """What stands of a trial whose names the locked runs bear out, beside a refit that leaves so much."""
     monkeypatch.setattr(standing_module, "_replicated", lambda own, *_: own)

@@ -456,6 +456,8 @@ def test_nothing_is_missing_only_where_the_slowest_blocks_keep_no_more_than_nois
     sides[which].slowest = 2.1
     said = f"noise 1; the slowest tenth of the {which} ones keeps 2.1"
     assert module._judged(trial, "", None).endswith(said)
+    beside = Trial(searched(ripple="a slow one is in the blocks' means"), None, sides["training"], sides["locked"])
+    assert module._judged(beside, "", None).verdict.kind == MISSING
 
 
 @pytest.mark.parametrize(("slowest", "refused"), [(1.2, True), (1.3, False)])

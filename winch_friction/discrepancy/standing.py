@@ -92,7 +92,8 @@ def _borne_out(study: Study, search: Search) -> Trial:
     if aside and not worse_runs(beside.holdout, rng):
         refit = beside
     judged = replace(refit, search=_judged(refit, next(filter(None, whys), ""), rng))
-    if judged.search.verdict.kind == UNEXPLAINED != search.verdict.kind and not search.selection.found:
+    alone = not search.selection.found and not aside  # beside a ripple or a leak the refit has it, the given model not
+    if judged.search.verdict.kind == UNEXPLAINED != search.verdict.kind and alone:
         # little data may lead a refit astray where the model that was given leaves nothing
         given = as_given(study, nameless(search))
         if at_the_floor(given.holdout) and not far_off(given.train):
@@ -213,11 +214,12 @@ def not_borne_out(search: Search, stands: Search) -> list[str]:
 def _judged(trial: Trial, why: str, rng: np.random.Generator) -> Search:
     """Without a name for the moving samples: nothing is missing only where the locked runs are at their noise, and the
     others, one of which may have met what none of the locked runs did, are not far off it, nor the slowest tenth of
-    either. What the search found to be no effect of a plausible size tells of something only where the file leaves more
-    than noise somewhere."""
+    either (of a slow ripple the blocks' means have some). What the search found to be no effect of a plausible size
+    tells of something only where the file leaves more than noise somewhere."""
     search, sides = trial.search, {"locked": trial.holdout, "training": trial.train}
     told = search.verdict.kind == UNEXPLAINED and not all(map(nobodys, sides.values()))
-    slow = next((which for which, side in sides.items() if slow_shows(side, LIMITS.far_off_the_floor)), "")
+    shows = (which for which, side in sides.items() if slow_shows(side, LIMITS.far_off_the_floor))
+    slow = "" if search.ripple else next(shows, "")
     if not told and not slow and at_the_floor(trial.holdout) and not far_off(trial.train):
         found = search.ripple or search.flow
         return replace(search, verdict=Verdict(MISSING if found else NOTHING, why))

@@ -26,7 +26,7 @@ from winch_friction.physics.signals import GroupSample, Run, Sample
 from winch_friction.records.runs import write_run
 
 ROOT = str(Path(winch_friction.__file__).parent) + "/"
-MOST_OF_A_GAP = 64
+MOST_OF_A_GAP = 65
 MOST_OF_A_MESSAGE = 14
 
 

@@ -192,7 +192,7 @@ LOST = dict(zip((run.name for run in RUNS), (1.0, 9.0, 1.0, 8.0, 1.0, 7.0, 1.0, 
 
 
 def leak(size=3.0):
-    """One whose rows are the speed that they lose, of the runs whose name ends so."""
+    """One whose rows say in their second column what they lose."""
     own = dict.fromkeys(("slip_std", "p_value", "before", "after"), 0.0)
     return SoRead({"slip_leakage": (size, 0.1)}, size, **own)
 
@@ -202,24 +202,23 @@ class SoRead(Leakage):
         return table[:, 1]
 
 
-def rows(runs, prepared, change):
-    """Of `run_8` the speed follows no command in any stretch."""
-    (run,) = runs
-    return np.full((0 if run.name == "run_8" else 4, 2), LOST[run.name])
-
-
-def gentle(monkeypatch, flow, other, stands=(), lost=LOST, **options):
+def gentle(monkeypatch, flow, other, stands=(), lost=LOST, split=SPLIT, **options):
     """What comes of what the training runs lose by `flow`, of which `stands` holds in the locked ones, if other runs
     are locked."""
     splits = []
+
+    def rows(runs, prepared, change):
+        (run,) = runs
+        follows = run.name != "run_8"  # of which the speed follows no command in any stretch
+        return np.full((4 if follows else 0, 2), lost[run.name])
+
     monkeypatch.setattr(again, "stretches", rows)
-    monkeypatch.setitem(globals(), "LOST", lost)
     monkeypatch.setattr(again, "search_runs", lambda study, *_: splits.append(study.split))
     monkeypatch.setattr(again, "standing", lambda *_: other)
     before = trial(MISSING, FLOOR, names=["wear_drift"])
     before.search.flow = stands
     searched = SimpleNamespace(flow=flow, given=SimpleNamespace(prepared=RUNS))
-    study = Study(SPLIT, None, GapOptions(**options), np.random.default_rng(0))
+    study = Study(split, None, GapOptions(**options), np.random.default_rng(0))
     study, after = again.by_lost_speed(study, before, searched)
     return study.split, after is not before, splits
 
@@ -266,5 +265,4 @@ def test_a_leak_is_taken_only_where_it_holds_and_all_else_stands(monkeypatch, ot
 
 def test_without_locked_runs_that_follow_a_command_nothing_is_said_of_a_leak(monkeypatch):
     only = Split(RUNS, SPLIT.train + SPLIT.holdout[:2], SPLIT.holdout[2:])
-    monkeypatch.setitem(globals(), "SPLIT", only)
-    assert gentle(monkeypatch, (leak(),), shown((leak(),)))[1:] == (False, [])
+    assert gentle(monkeypatch, (leak(),), shown((leak(),)), split=only) == (only, False, [])

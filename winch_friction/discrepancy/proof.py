@@ -61,7 +61,7 @@ def unproven(named: str, refit: Side, repaired: Side, rng: np.random.Generator) 
     removed = float(np.sqrt(before.value**2 - after.value**2))
     if removed < repaired.least_noise:
         return f"{named} takes {removed:.2g} off the locked gap, which is less than any balance closes"
-    beside = _beside_a_refit(refit, repaired)
+    beside = _taken_off(refit, repaired)
     if beside < LIMITS.beside_a_refit * repaired.least_noise and at_the_floor(refit) and not slow_shows(refit):
         why = f"takes {beside:.2g} off what the model's own parameters leave once fitted anew: too little for an effect"
         return f"{named} {why}"
@@ -81,7 +81,7 @@ def may_be_none(slots: Sequence[Slot], full: Trial, refit: Trial) -> str:
     """Why a name is refused whose amounts are none of them sure, where a refit without it leaves the locked runs at
     their floor, and it takes less off what that leaves than a balance can tell: what it takes of the others is chance.
     """
-    if not at_the_floor(refit.holdout) or _beside_a_refit(refit.holdout, full.holdout) > full.holdout.least_noise:
+    if not at_the_floor(refit.holdout) or _taken_off(refit.holdout, full.holdout) > full.holdout.least_noise:
         return ""
     for slot in on_their_own(slots):
         found, (candidate, shape) = full.repaired.parameters.get(slot.name, {}), slot.origin
@@ -92,7 +92,7 @@ def may_be_none(slots: Sequence[Slot], full: Trial, refit: Trial) -> str:
     return ""
 
 
-def _surely_some(amounts: Estimates, file: FrictionModel, shapes: Collection[str] = ()) -> float:
+def _surely_some(amounts: Estimates, file: FrictionModel, shapes: Collection[str]) -> float:
     """Standard deviations by which the amounts of a cause are some together, its `shapes` as they were found: of two
     that a file ties each may be none, and yet not both, and of a steeper law a smaller amount is as much, but none of
     it nothing. 0 where the file does not know how they are tied, as it does not of corrections."""
@@ -105,15 +105,15 @@ def _surely_some(amounts: Estimates, file: FrictionModel, shapes: Collection[str
     return float(np.sqrt(chdtri(1, chdtrc(len(at), value @ np.linalg.solve(own, value)))))
 
 
-def _beside_a_refit(refit: Side, repaired: Side) -> float:
-    """What names take off the locked gap that a mere refit leaves."""
-    return float(np.sqrt(max(refit.size_after.value**2 - repaired.size_after.value**2, 0.0)))
+def _taken_off(fewer: Side, more: Side) -> float:
+    """What names take off the locked gap that fewer of them, or a mere refit, leave."""
+    return float(np.sqrt(max(fewer.size_after.value**2 - more.size_after.value**2, 0.0)))
 
 
 def adds(fewer: Side, more: Side, rng: np.random.Generator) -> bool:
     """Whether the names that `more` has beside those of `fewer` take something off the locked gap, surely and by an
     amount that a balance of a winch can tell."""
-    removed = np.sqrt(max(fewer.size_after.value**2 - more.size_after.value**2, 0.0))
+    removed = _taken_off(fewer, more)
     return bool(removed >= more.least_noise and chance_of_no_gain(*_common(fewer, more), rng) <= LIMITS.proof_p)
 
 

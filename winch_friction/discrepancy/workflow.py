@@ -219,7 +219,8 @@ def _experiment(crane: Crane, search: Search, options: GapOptions) -> NextExperi
     """For the first effect that has rivals; an electric drive has no scenario family."""
     if search.verdict.kind != AMBIGUOUS or not crane.drive.hydraulic:
         return None
-    own, fitted = next(each for each in search.selection.found if each.rivals), search.selection.final
+    own = next(each for each in search.selection.found if each.rivals)
+    fitted = search.selection.final
     return plan_experiment(crane, search.expansion, search.cross, fitted, own.slot, own.rivals, options.seed)
 
 
@@ -255,7 +256,7 @@ def _concluded(model: FrictionModel, given: FrictionModel, verdict: str) -> Fric
 
 
 def _notes(runs: Sequence[Run], loads: Mapping[str, float]) -> tuple[str, ...]:
-    notes = (f"{name}: no hook_load; {load / 1e3:.1f} t estimated from the balance" for name, load in loads.items())
+    notes = [f"{name}: no hook_load; {load / 1e3:.1f} t estimated from the balance" for name, load in loads.items()]
     bare = {reduce(str.removesuffix, adequacy.PARTS, r.name) for r in runs if "wire_layer" not in r and r.groups}
     said = f"no wire_layer in {len(bare)} run{'s' * (len(bare) > 1)}: the outer layer is assumed"
     return (*notes, *([said] if bare else []))

@@ -43,7 +43,6 @@ ZEROS = (ZERO, "torque_offset", "tare_load")  # of what tells a torque or a load
 OIL = ("oil_temperature",)
 # K between the coldest run and the warmest: over less, what bends by typically 5 mbar/K^2 is within 0.15 bar of a line
 WARMTH_TO_BEND = 15.0
-
 p_T = Parameter(
     "p_T", "Pa/K", 0.1 * BAR, lower=-5.0 * BAR, upper=5.0 * BAR, doc="thermal zero shift of the transducers"
 )
